@@ -21,6 +21,16 @@ ChunkStore::Submap* ChunkStore::submap(const std::string& robot, const perceptio
   return &submaps[key];
 }
 
+std::optional<CoarseBlock> ChunkStore::find(const perception::SubmapKey& key, const BlockIndex& index) const {
+  const auto robot = robots_.find(key.robot);
+  if (robot == robots_.end()) return std::nullopt;
+  const auto submap = robot->second.submaps.find(key);
+  if (submap == robot->second.submaps.end()) return std::nullopt;
+  const auto block = submap->second.blocks.find(index);
+  if (block == submap->second.blocks.end()) return std::nullopt;
+  return CoarseBlock{index, block->second.known, block->second.occupied};
+}
+
 void ChunkStore::clear() {
   robots_.clear();
   blocks_ = 0;

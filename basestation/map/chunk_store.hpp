@@ -54,6 +54,10 @@ class ChunkStore {
   /// for one more robot.
   bool count(const std::string& robot, std::size_t bytes, std::uint32_t waiting, std::optional<Time> now);
 
+  /// The stored state of a block; nothing: it is not here.
+  std::optional<perception::CoarseBlock> find(const perception::SubmapKey& key,
+                                              const perception::BlockIndex& index) const;
+
   /// Forgets everything.
   void clear();
 

@@ -10,7 +10,9 @@ Result<void> MapReceiver::store(const std::string& robot, std::uint8_t kind,
   if (data.size() > transfer::kMaxPieceBytes)
     return {Reason::malformed, "a piece is longer than any robot sends"};
   if (kind == static_cast<std::uint8_t>(transfer::Kind::map_blocks)) {
-    const auto piece = perception::decode(data);
+    const auto piece = perception::decode(data, [this](const auto& key, const perception::BlockIndex& index) {
+      return chunks_.find(key, index);
+    });
     if (!piece) return piece.error();
     if (piece->key.robot != robot) return {Reason::malformed, "a piece of another robot's map"};
     if (!chunks_.take(robot, *piece)) return {Reason::queue_full, "no room for more of the map"};

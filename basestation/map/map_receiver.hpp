@@ -12,8 +12,9 @@ namespace adit::station {
 class MapReceiver {
  public:
   /// Takes one piece. `robot`: a robot whose participant sent it. Errors: malformed (also: content of another
-  /// robot), not_supported (a kind of a later release), queue_full (no room). What does not fit, or will
-  /// never be understood, should be acknowledged, too: it would come again without end. A damaged piece
+  /// robot), out_of_range (changes of blocks that are not here in that state), not_supported (a kind of a
+  /// later release), queue_full (no room). What does not fit, or will never be understood, should be
+  /// acknowledged, too: it would come again without end. A piece that is damaged or whose base is missing
   /// should not, as its content comes in another one.
   Result<void> take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
                     std::span<const std::uint8_t> data, Time now);

@@ -71,13 +71,15 @@ std::string MapReplica::load() {
 Result<void> MapReplica::take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
                               std::span<const std::uint8_t> data, std::function<void()> stored) {
   const Result<void> taken = receiver_.take(robot, kind, waiting, data, home_.now());
+  const bool comes_again =
+      !taken && (taken.reason() == Reason::malformed || taken.reason() == Reason::out_of_range);
   if (taken)
     journal_.add({robot, kind, {data.begin(), data.end()}}, std::move(stored));
-  else if (taken.reason() != Reason::malformed)
+  else if (!comes_again)
     stored();  // What does not fit, or will never be understood, would come again without end.
   // The start under which that was acknowledged, or an earlier robot's map forgotten, ends with this process:
   // perhaps the next one understands it, or has room.
-  const bool lacks = !taken && taken.reason() != Reason::malformed;
+  const bool lacks = !taken && !comes_again;
   if ((lacks || chunks().evicted() > 0) && !std::exchange(incomplete_, true))
     journal_.begin(0, pieces_of(chunks()));
   return taken;

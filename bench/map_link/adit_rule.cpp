@@ -25,11 +25,11 @@ constexpr transfer::PeerId kStation{1, 2, 3};
 
 /// One robot's side.
 struct AditRobot {
-  AditRobot(std::string robot, std::uint32_t session)
+  AditRobot(std::string robot, std::uint32_t session, perception::FindStored find_stored)
       : name(std::move(robot)),
         poses(name, kStart),
         blocks({.robot = name, .start = kStart}),
-        counted(blocks),
+        counted(blocks, std::move(find_stored)),
         sender({.session = session}) {
     sender.add(poses);
     sender.add(counted);
@@ -53,8 +53,8 @@ class AditRule final : public Rule {
  public:
   explicit AditRule(const Mission& mission) : mission_(mission) {
     for (std::size_t i = 0; i < mission.robots.size(); ++i)
-      robots_.push_back(std::make_unique<AditRobot>(mission.robots[i].robot,
-                                                    static_cast<std::uint32_t>(2 * (mission.seed + i) + 1)));
+      robots_.push_back(std::make_unique<AditRobot>(
+          mission.robots[i].robot, static_cast<std::uint32_t>(2 * (mission.seed + i) + 1), find_stored()));
   }
 
   void update(std::size_t robot, const MapUpdate& update) override {
@@ -63,7 +63,6 @@ class AditRule final : public Rule {
     const auto [found, opened] = r.offsets.try_emplace(step.submap, lattice_offset(step.T_odom_submap));
     if (opened) {
       r.blocks.open(step.submap, {kStart, step.submap, step.odom_epoch, found->second});
-      r.counted.open(step.submap, found->second);
       r.poses.open(step.submap, kStart, step.submap, 0);
       r.poses.update(step.submap, mission_.robots[robot].T_map_odom * step.T_odom_submap);
     }
@@ -105,6 +104,10 @@ class AditRule final : public Rule {
   }
 
  private:
+  perception::FindStored find_stored() const {
+    return [this](const auto& key, const BlockIndex& index) { return station_.chunks().find(key, index); };
+  }
+
   void send(std::size_t robot) {
     AditRobot& r = *robots_[robot];
     Air& air = mission_.air;
@@ -132,7 +135,7 @@ class AditRule final : public Rule {
   }
 
   void note_sent(std::size_t robot, const transfer::Piece& piece) {
-    const auto decoded = perception::decode(piece.data);
+    const auto decoded = perception::decode(piece.data, find_stored());
     if (!decoded) return;
     for (const perception::BlockUpdate& update : decoded->blocks)
       mission_.watch.was_sent(robot, lattice(robot, decoded->key.index, update.block.index),
@@ -142,6 +145,7 @@ class AditRule final : public Rule {
   void arrived(std::size_t robot, std::uint32_t session, const transfer::Piece& piece) {
     AditRobot& r = *robots_[robot];
     const Time now = mission_.air.now();
+    const auto decoded = perception::decode(piece.data, find_stored());
     const auto kind = static_cast<std::uint8_t>(piece.kind);
     if (!station_.take(r.name, kind, piece.waiting, piece.data, now)) return;
     receiver_.take(r.name, session, piece.id, now);
@@ -154,7 +158,6 @@ class AditRule final : public Rule {
           for (const auto& [index, block] : known->blocks) show(robot, submap, index, block);
       return;
     }
-    const auto decoded = perception::decode(piece.data);
     const auto* known = stored(r, decoded->key.index);
     if (known == nullptr || !known->T_map_submap) return;
     for (const perception::BlockUpdate& update : decoded->blocks)

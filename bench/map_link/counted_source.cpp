@@ -10,25 +10,21 @@ std::optional<transfer::Source::Content> CountedSource::next(std::span<const tra
   ++asked_;
   auto content = source_.next(peers, max_bytes, now);
   if (!content) return content;
-  const auto piece = perception::decode(content->data);
+  const auto piece = perception::decode(content->data, find_stored_);
   if (!piece) return content;
   account_.content += content->data.size();
   ++account_.sent;
   const double part = static_cast<double>(content->data.size()) / static_cast<double>(piece->blocks.size());
+  if (piece->level < 2) {
+    account_.coarse += static_cast<double>(content->data.size());
+    return content;
+  }
   std::vector<Name>& names = flights_[content->token];
   for (const perception::BlockUpdate& update : piece->blocks) {
     const Name& name = names.emplace_back(piece->key.index, update.block.index);
-    const perception::BlockIndex& offset = offsets_[piece->key.index];
     const bool repeated = lost_.erase(name) != 0;
     const bool first = ever_.insert(name).second;
-    const bool place = places_
-                           .insert({update.block.index.x + offset.x, update.block.index.y + offset.y,
-                                    update.block.index.z + offset.z})
-                           .second;
-    (repeated ? account_.repeated
-     : place  ? account_.first
-     : first  ? account_.again
-              : account_.changed) += part;
+    (repeated ? account_.repeated : first ? account_.first : account_.changed) += part;
   }
   return content;
 }

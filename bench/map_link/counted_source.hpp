@@ -2,16 +2,20 @@
 #pragma once
 #include <map>
 #include <set>
+#include <utility>
 
 #include "bench/map_link/rule.hpp"
+#include "perception/stream/piece.hpp"
 #include "robot_agent/perception/block_source.hpp"
 
 namespace adit::bench {
 
-/// Passes everything to a BlockSource, and counts what its pieces hold. For one peer.
+/// Passes everything to a BlockSource, and counts what its pieces hold. For one peer; `find_stored` finds the
+/// blocks of that peer.
 class CountedSource final : public transfer::Source {
  public:
-  explicit CountedSource(agent::BlockSource& source) : source_(source) {}
+  CountedSource(agent::BlockSource& source, perception::FindStored find_stored)
+      : source_(source), find_stored_(std::move(find_stored)) {}
 
   transfer::Kind kind() const override { return source_.kind(); }
   void join(const transfer::PeerId& peer) override { source_.join(peer); }
@@ -23,8 +27,6 @@ class CountedSource final : public transfer::Source {
   void lost(const transfer::PeerId& peer, std::uint64_t token) override;
   void settled(std::uint64_t token) override;
 
-  /// Notes where a submap lies in the lattice of the robot's odometry.
-  void open(std::uint32_t submap, const perception::BlockIndex& offset) { offsets_[submap] = offset; }
   /// Number of calls of next().
   std::uint64_t asked() const { return asked_; }
   const Account& account() const { return account_; }
@@ -32,10 +34,9 @@ class CountedSource final : public transfer::Source {
  private:
   using Name = std::pair<std::uint32_t, perception::BlockIndex>;
   agent::BlockSource& source_;
+  perception::FindStored find_stored_;
   Account account_{};
   std::uint64_t asked_{};
-  std::map<std::uint32_t, perception::BlockIndex> offsets_{};
-  std::set<perception::BlockIndex> places_{};
   std::set<Name> ever_{}, lost_{};
   std::map<std::uint64_t, std::vector<Name>> flights_{};
 };

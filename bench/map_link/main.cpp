@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(CLI::IsMember({"coding", "17", "18", "19", "20"}));
   app.add_flag("--quick", options.quick, "one world and two minutes; without `coding`");
+  app.add_flag("--alone", options.alone, "this project only, without the other ways");
   app.add_option("--seed", options.seed, "of the drives and of the losses")->capture_default_str();
   app.add_option("--length", length, "of a drive of `coding`, m")
       ->capture_default_str()

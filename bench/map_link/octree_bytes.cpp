@@ -21,7 +21,7 @@ std::size_t octree_file_bytes(const std::vector<perception::CoarseBlock>& blocks
 void Account::add(const Account& other) {
   content += other.content;
   first += other.first;
-  again += other.again;
+  coarse += other.coarse;
   changed += other.changed;
   repeated += other.repeated;
   poses += other.poses;

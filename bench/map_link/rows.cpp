@@ -41,8 +41,9 @@ const std::array<NamedRule, 3>& rules() {
   return all;
 }
 
-std::array<MissionResult, 3> run_all(const std::vector<MapRecording>& robots, const MissionPlan& plan) {
-  std::array<MissionResult, 3> out;
+std::vector<MissionResult> run_all(const std::vector<MapRecording>& robots, const MissionPlan& plan,
+                                   bool alone) {
+  std::vector<MissionResult> out(alone ? 1 : rules().size());
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < out.size(); ++i)
     threads.emplace_back([&, i] { out[i] = run_mission(robots, plan, rules()[i].make); });
@@ -93,7 +94,7 @@ std::string row_causes(const std::string& where, const MissionResult& r) {
   return fmt::format(
       "| {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {} | {} / {} | {:.0f} | {:.0f} | {} / {} | {:.1f} | "
       "{} |",
-      where, r.robots.bytes - a.content, a.first, a.again, a.changed, a.repeated, a.poses, a.sent, a.lost,
+      where, r.robots.bytes - a.content, a.first, a.changed, a.repeated, a.coarse, a.poses, a.sent, a.lost,
       share(a.held), share(a.paced), time(quantile(r.waits, 0.5)), time(quantile(r.waits, kShare)),
       seconds(r.after),
       r.different_voxels == 0 && r.different_blocks == 0 && r.settled
@@ -128,8 +129,8 @@ Result<std::size_t> run_worlds(const RowOptions& options, Lines& lines) {
       const auto profile = wire::load_link(link.link);
       if (!profile) return profile.error();
       const std::string where = fmt::format("{}, {}", name, link.link);
-      fmt::print(stderr, "{}: three rules send\n", where);
-      const auto results = run_all(robots, {.link = *profile, .seed = options.seed});
+      fmt::print(stderr, "{}: rules send\n", where);
+      const auto results = run_all(robots, {.link = *profile, .seed = options.seed}, options.alone);
       for (std::size_t i = 0; i < results.size(); ++i) {
         lines.bytes.push_back(row_17(where, i, results[i], file));
         lines.ages.push_back(row_18(where, i, results[i], link.age));
@@ -149,8 +150,8 @@ Result<std::size_t> run_cut(const RowOptions& options, Lines& lines) {
   const auto robots = record_team(*ground, options.seed, 1, kBefore + cut);
   const auto profile = wire::load_link("mesh_100k");
   if (!profile) return profile.error();
-  const auto results =
-      run_all(robots, {.link = *profile, .seed = options.seed, .cut_from = kBefore, .limit = 600s});
+  const auto results = run_all(
+      robots, {.link = *profile, .seed = options.seed, .cut_from = kBefore, .limit = 600s}, options.alone);
   const double area = area_seen_since(robots[0], kBefore);
   const std::size_t file = octree_file_bytes(final_map(robots[0]));
   for (std::size_t i = 0; i < results.size(); ++i)
@@ -189,7 +190,7 @@ Result<std::size_t> print_mission_rows(const RowOptions& options) {
           "| |",
           lines.cuts);
   print("Where Adit's bytes and seconds go",
-        "| world, link | headers | new places | again | changed | after a loss | poses | pieces / lost | "
+        "| world, link | headers | new places | changed | after a loss | coarse | poses | pieces / lost | "
         "held, % | no "
         "credit, % | first sent after, 50 / 95 %, s | settled after, s | station's map |",
         lines.causes);

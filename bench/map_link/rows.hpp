@@ -10,6 +10,7 @@ namespace adit::bench {
 
 struct RowOptions {
   std::set<std::string> rows{};  ///< 17 to 20 of the specification.
+  bool alone{};                  ///< Without the other rules.
   bool quick{false};             ///< One world and two minutes.
   std::uint64_t seed{1};
 };

@@ -22,9 +22,9 @@ struct Mission {
 /// Where the bytes and the time of a rule went, as it knows them itself.
 struct Account {
   std::uint64_t content{};  ///< Bytes of the map itself, without headers.
-  /// Of them: of places never sent, of places that an older submap showed, of blocks that changed since they
-  /// were sent, and of blocks that were lost.
-  double first{}, again{}, changed{}, repeated{};
+  /// Of them: of places never sent, of blocks that changed since they were sent, of blocks that were lost,
+  /// and of voxels of 0.4 m.
+  double first{}, changed{}, repeated{}, coarse{};
   std::uint64_t poses{};                   ///< Of them: poses of submaps.
   std::uint64_t lost{}, sent{};            ///< Pieces.
   std::uint64_t held{}, paced{}, ticks{};  ///< Rounds with something to send, but held back or no credit.

@@ -7,12 +7,15 @@
 
 namespace adit::bench {
 
-void SampleCollector::add(const perception::BlockSet& set, std::uint32_t weight) {
+void SampleCollector::add(const perception::BlockSet& set, std::uint32_t weight,
+                          const perception::FindBase& find_base) {
   weight_ = weight;
-  perception::BlockWalk(*this).write(set);
+  with_base_only_ = static_cast<bool>(find_base);
+  perception::BlockWalk(*this, set.level, find_base).write(set);
 }
 
 bool SampleCollector::decide(int decision, const perception::VoxelContext& context, bool value) {
+  if (with_base_only_ && decision < perception::kDecisionsAlone) return value;
   Answers answers{};
   for (int feature = 0; feature < perception::feature_count(); ++feature)
     if (context.test(feature))

@@ -27,10 +27,12 @@ struct Sample {
   std::array<std::uint32_t, 2> count{};
 };
 
-/// Counts the decisions of sets of blocks, each `weight` times.
+/// Counts the decisions of sets of blocks, each `weight` times; of sets with bases those about blocks that
+/// have one.
 class SampleCollector {
  public:
-  void add(const perception::BlockSet& set, std::uint32_t weight = 1);
+  void add(const perception::BlockSet& set, std::uint32_t weight = 1,
+           const perception::FindBase& find_base = {});
   std::vector<Sample> samples(int decision) const;
 
   bool decide(int decision, const perception::VoxelContext& context, bool value);
@@ -40,6 +42,7 @@ class SampleCollector {
 
  private:
   std::uint32_t weight_{1};
+  bool with_base_only_{false};
   std::array<std::unordered_map<Answers, std::array<std::uint32_t, 2>, AnswersHash>, perception::kDecisions>
       counts_{};
 };

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
 #include "bench/map_link/drives.hpp"
+#include "bench/map_link/ground.hpp"
+#include "bench/map_link/recording.hpp"
 #include "bench/map_link/samples.hpp"
+#include "bench/map_link/sent_sets.hpp"
 #include "bench/map_link/tree_growth.hpp"
 
 namespace {
@@ -25,6 +29,36 @@ void add(SampleCollector& to, const std::vector<perception::FineBlock>& blocks, 
   for (int level = 1; level <= 3; ++level)
     for (const auto& set : sets_of(blocks, level, kBlocksInSet[static_cast<std::size_t>(level)]))
       to.add(set, weight);
+}
+
+/// The sets of blocks that robots send while they drive, to a station that has what they sent before.
+Result<void> add_missions(SampleCollector& to, const std::vector<std::string>& kinds, Duration length) {
+  constexpr std::size_t kPieceBytes = 1056;
+  for (const std::string& kind : kinds) {
+    const auto ground = make_ground(kind, 101);
+    if (!ground) return ground.error();
+    std::size_t pieces = 0, blocks = 0, changes = 0;
+    for (const MapRecording& robot : record_team(*ground, 101, 1, length))
+      visit_sent(robot, kPieceBytes, [&](const perception::MapPiece& piece, const auto& find_stored) {
+        std::vector<perception::CoarseBlock> masks;
+        for (const perception::BlockUpdate& update : piece.blocks) masks.push_back(update.block);
+        to.add(perception::block_set(std::span<const perception::CoarseBlock>(masks)), 1,
+               [&](const perception::BlockIndex& index) -> std::optional<perception::CoarseBlock> {
+                 const auto base = find_stored(piece.key, index);
+                 const auto now = std::lower_bound(
+                     masks.begin(), masks.end(), index,
+                     [](const auto& mask, const auto& wanted) { return mask.index < wanted; });
+                 if (!base || (base->known & ~now->known) != 0) return std::nullopt;
+                 ++changes;
+                 return base;
+               });
+        ++pieces;
+        blocks += masks.size();
+      });
+    fmt::print("{}: {} blocks in {} pieces, {} of them changes\n", kind, blocks, pieces, changes);
+    std::fflush(stdout);
+  }
+  return {};
 }
 
 bool write_tables(const std::string& file, const std::string& text) {
@@ -49,12 +83,14 @@ int main(int argc, char** argv) {
   std::string out = "perception/stream/block_tables.cpp";
   int seeds = 3;
   double length = 60.0, min_gain = 20.0;
-  std::size_t characters = 7000;
+  double mission = 90.0;
+  std::size_t characters = 8000;
   std::vector<std::string> kinds{"corridor", "blocks", "cave", "stairs", "rubble", "rooms", "maze", "loop"};
   app.add_option("--out", out, "file to write")->capture_default_str();
   app.add_option("--kinds", kinds, "of worlds")->delimiter(',');
   app.add_option("--seeds", seeds, "worlds of each kind: seeds 101 and up")->capture_default_str();
   app.add_option("--length", length, "of a drive, m")->capture_default_str();
+  app.add_option("--mission", mission, "duration of missions, s")->capture_default_str();
   app.add_option("--characters", characters, "of the tables")->capture_default_str();
   app.add_option("--min-gain", min_gain, "bits that a question must save")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
@@ -78,6 +114,10 @@ int main(int argc, char** argv) {
   for (const std::string& kind : kinds)
     for (int seed = 0; seed < seeds; ++seed)
       if (!add_drive(kind, static_cast<std::uint64_t>(101 + seed))) return 2;
+  if (const auto added = add_missions(collector, kinds, from_seconds(mission)); !added) {
+    fmt::print(stderr, "map_train: {}\n", added.error().text);
+    return 2;
+  }
   const auto building = building_map();
   if (!building) {
     fmt::print(stderr, "map_train: {}\n", building.error().text);

@@ -15,7 +15,7 @@ struct ReceiverParams {
   Duration slow{1s};             ///< Shortest time between two acknowledgements on a thin link.
   Duration fast{250ms};          ///< The same on others.
   double thin{1e6};              ///< A link of a lower bandwidth is thin, bit/s.
-  Duration idle{4s};             ///< Period of acknowledgements while nothing arrives.
+  Duration idle{2s};             ///< Period of acknowledgements while nothing arrives.
   std::size_t max_senders{64};   ///< Senders that are remembered.
   std::size_t max_receipts{16};  ///< Receipts in one acknowledgement.
 };

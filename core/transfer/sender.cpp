@@ -66,7 +66,8 @@ void Sender::settle(const PeerId& peer, const Receipt& receipt, Time now) {
       measure(now - flight.sent);
       flight.source->acknowledged(peer, flight.token);
       pacer_.settled(true);
-    } else if (receipt.newest >= flight.id + kOvertaken && now - flight.sent >= params_.min_timeout / 2) {
+    } else if (now - flight.sent >= timeout() ||
+               (receipt.newest >= flight.id + kOvertaken && now - flight.sent >= params_.min_timeout / 2)) {
       flight.source->lost(peer, flight.token);
       pacer_.settled(false);
     } else {
@@ -78,9 +79,8 @@ void Sender::settle(const PeerId& peer, const Receipt& receipt, Time now) {
 }
 
 void Sender::expire(Time now) {
-  const Duration limit = timeout();
   for (Flight& flight : flights_) {
-    if (now - flight.sent >= limit) {
+    if (now - flight.sent >= params_.max_timeout) {
       for (const PeerId& peer : flight.awaited) {
         flight.source->lost(peer, flight.token);
         // A peer that is not heard at all says nothing about the rate at which it should be sent to.

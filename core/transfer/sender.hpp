@@ -23,9 +23,10 @@ struct SenderParams {
 };
 
 /// Sends the content of its sources to every peer that acknowledges, as the link allows. A piece goes to all
-/// peers at once and is chosen for the one that lacks most. A piece that is not acknowledged within a time
-/// measured from the delay of acknowledgements (as RFC 6298 does) counts as lost: its content is missing
-/// again, and the source gives its newest state later.
+/// peers at once and is chosen for the one that lacks most. A piece counts as lost when an acknowledgement
+/// without it comes after a time measured from the delay of acknowledgements (as RFC 6298 does), or none for
+/// `max_timeout`: acknowledgements are lost, too. Its content is missing again, and the source gives its
+/// newest state later.
 ///
 /// A pure state machine, bounded in all that others can make it store. Sources must outlive it.
 class Sender {
@@ -43,7 +44,7 @@ class Sender {
   std::uint32_t session() const { return params_.session; }
   std::size_t peers() const { return peers_.size(); }
   std::size_t in_flight() const { return flights_.size(); }
-  /// Time without an acknowledgement after which a piece counts as lost.
+  /// Time after which an acknowledgement that does not have a piece says that it was lost.
   Duration timeout() const;
 
  private:

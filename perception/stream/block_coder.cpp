@@ -92,19 +92,27 @@ class Reader {
 
 }  // namespace
 
-void write_blocks(RangeEncoder& to, const BlockSet& set, std::vector<std::uint32_t>* bits) {
+void write_blocks(RangeEncoder& to, const BlockSet& set, const FindBase& find_base,
+                  std::vector<std::uint32_t>* bits) {
   if (bits != nullptr) bits->assign(set.indices.size(), 0);
   Writer writer(to, bits);
-  BlockWalk<Writer>(writer).write(set);
+  BlockWalk<Writer>(writer, set.level, find_base).write(set);
   writer.begin(SIZE_MAX);
 }
 
-Result<BlockSet> read_blocks(RangeDecoder& from, int max_level) {
+Result<BlockSet> read_blocks(RangeDecoder& from, int max_level, const FindBase& find_base) {
   Reader reader(from);
+  using Walk = BlockWalk<Reader>;
   BlockSet set;
-  if (!BlockWalk<Reader>(reader, max_level).read(set))
-    return {Reason::malformed, "blocks of the map that make no sense"};
-  return set;
+  switch (Walk(reader, max_level, find_base).read(set)) {
+    case Walk::Read::good:
+      return set;
+    case Walk::Read::other_base:
+      return {Reason::out_of_range, "changes of blocks of the map that are not here"};
+    case Walk::Read::malformed:
+      break;
+  }
+  return {Reason::malformed, "blocks of the map that make no sense"};
 }
 
 }  // namespace adit::perception

@@ -14,7 +14,14 @@ enum class Question : std::uint8_t {
   fine_occupied,
   fine_unknown,
   coarse_occupied,
-  coarse_unknown
+  coarse_unknown,
+  base,
+  base_face,     ///< A neighbour of the base through a face is occupied.
+  fine_changed,  ///< Neighbours that are coded and differ from the base.
+  coarse_changed,
+  parent_changed,
+  base_occupied,
+  base_unknown
 };
 
 struct Feature {
@@ -30,10 +37,17 @@ constexpr std::array<std::uint8_t, 5> kFineOccupied{1, 2, 3, 4, 6};
 constexpr std::array<std::uint8_t, 4> kFineUnknown{1, 2, 4, 7};
 constexpr std::array<std::uint8_t, 5> kCoarseOccupied{1, 2, 4, 6, 9};
 constexpr std::array<std::uint8_t, 5> kCoarseUnknown{1, 3, 6, 9, 13};
+constexpr std::array<std::uint8_t, 3> kBaseMasks{kKnown, kOccupied, kFull};
+constexpr std::array<std::uint8_t, 2> kParentMasks{kKnown | kFull, kOccupied};
+constexpr std::array<std::uint8_t, 4> kFineChanged{1, 2, 3, 5};
+constexpr std::array<std::uint8_t, 3> kCoarseChanged{1, 2, 4};
+constexpr std::array<std::uint8_t, 3> kBaseOccupied{1, 3, 6};
+constexpr std::array<std::uint8_t, 2> kBaseUnknown{1, 4};
+constexpr int kBaseFeatures = 3 + 6 + 4 + 3 + 2 + 3 + 2;
 
 // The order is part of the format: ids below kShortIds take one character in the tables.
 constexpr auto kFeatures = [] {
-  std::array<Feature, 3 * 26 + 4 * 26 + 6 + 3 + 2 + 19> out{};
+  std::array<Feature, 3 * 26 + 4 * 26 + 6 + 3 + 2 + 19 + kBaseFeatures> out{};
   std::size_t n = 0;
   const auto add = [&](Question question, int which, std::uint8_t mask = 0) {
     out[n++] = {question, static_cast<std::uint8_t>(which), mask};
@@ -61,6 +75,13 @@ constexpr auto kFeatures = [] {
   for (const int face : kFaces) add(Question::fine, face, kFull);
   add(Question::target, 1);
   add(Question::target, 3);
+  for (const std::uint8_t mask : kBaseMasks) add(Question::base, 0, mask);
+  for (const int face : kFaces) add(Question::base_face, face, kOccupied);
+  for (const std::uint8_t count : kFineChanged) add(Question::fine_changed, count);
+  for (const std::uint8_t count : kCoarseChanged) add(Question::coarse_changed, count);
+  for (const std::uint8_t mask : kParentMasks) add(Question::parent_changed, 0, mask);
+  for (const std::uint8_t count : kBaseOccupied) add(Question::base_occupied, count);
+  for (const std::uint8_t count : kBaseUnknown) add(Question::base_unknown, count);
   return out;
 }();
 
@@ -71,10 +92,21 @@ int count(const std::uint8_t* centre, const std::array<std::int16_t, kNeighbours
   return out;
 }
 
+int count_changed(const std::uint8_t* now, const std::uint8_t* before,
+                  const std::array<std::int16_t, kNeighbours>& step) {
+  int out = 0;
+  for (const std::int16_t to : step)
+    out += ((now[to] | before[to]) & kNotCoded) == 0 && ((now[to] ^ before[to]) & (kKnown | kOccupied)) != 0
+               ? 1
+               : 0;
+  return out;
+}
+
 // Text of the tables: characters from '#' to '~' without the backslash.
 constexpr int kCharacters = 91;
 constexpr int kShortIds = kCharacters - ContextTrees::kLeafValues - 2;
 constexpr int kLongIds = ContextTrees::kLeafValues + kShortIds;  ///< Two characters that announce a second.
+static_assert(static_cast<int>(kFeatures.size()) <= kShortIds + 2 * kCharacters);
 constexpr char character(int value) {
   const int at = '#' + value;
   return static_cast<char>(at < '\\' ? at : at + 1);
@@ -117,6 +149,20 @@ bool VoxelContext::test(int feature) const {
       return count(coarse, *coarse_step, kOccupied, kOccupied) >= f.which;
     case Question::coarse_unknown:
       return count(coarse, *coarse_step, 0xff, kUnknown) >= f.which;
+    case Question::base:
+      return base != nullptr && (base[0] & f.mask) != 0;
+    case Question::base_face:
+      return base != nullptr && (base[(*fine_step)[f.which]] & f.mask) != 0;
+    case Question::fine_changed:
+      return base != nullptr && count_changed(fine, base, *fine_step) >= f.which;
+    case Question::coarse_changed:
+      return coarse_base != nullptr && count_changed(coarse, coarse_base, *coarse_step) >= f.which;
+    case Question::parent_changed:
+      return coarse_base != nullptr && ((coarse[0] ^ coarse_base[0]) & f.mask) != 0;
+    case Question::base_occupied:
+      return base != nullptr && count(base, *fine_step, kOccupied, kOccupied) >= f.which;
+    case Question::base_unknown:
+      return base != nullptr && count(base, *fine_step, 0xff, kUnknown) >= f.which;
   }
   return false;
 }

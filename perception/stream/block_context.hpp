@@ -29,8 +29,12 @@ enum Decision : std::uint8_t {
   part_occupied
 };
 constexpr int kDecisionsOfLevel = 4;
-constexpr int kDecisions = block_uniform + 1 + 3 * kDecisionsOfLevel;
+constexpr int kDecisionsAlone = block_uniform + 1 + 3 * kDecisionsOfLevel;
 constexpr int decision_at(Decision decision, int level) { return decision + (level - 1) * kDecisionsOfLevel; }
+/// The same decisions about blocks of which the receiver has an older state, the base, have trees of their
+/// own.
+constexpr int with_base(int decision) { return decision + kDecisionsAlone; }
+constexpr int kDecisions = 2 * kDecisionsAlone;
 
 constexpr int kNeighbours = 26;
 /// Offset of a neighbour, [-1, 1]: z slowest, the voxel itself left out.
@@ -39,16 +43,18 @@ constexpr std::array<int, 3> neighbour_offset(int n) {
   return {cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1};
 }
 
-/// Surroundings of the voxel that is coded: its neighbours on its own level as far as they are coded, and
-/// those of its parent. Features are questions about them with the answer yes or no.
+/// Surroundings of the voxel that is coded: its neighbours on its own level as far as they are coded, those
+/// of its parent, and the base of both. Features are questions about them with the answer yes or no.
 struct VoxelContext {
   const std::uint8_t* fine{};                                ///< The voxel in an array with a margin of one.
   const std::array<std::int16_t, kNeighbours>* fine_step{};  ///< To its neighbours.
   const std::uint8_t* coarse{};                              ///< Its parent, the same way.
   const std::array<std::int16_t, kNeighbours>*
-      coarse_step{};  ///< Mirrored: positive is outward of the parent.
-  int child{};        ///< Which part of the parent: x + 2 y + 4 z.
-  int target{};       ///< Level of the voxels that are coded in the end.
+      coarse_step{};                  ///< Mirrored: positive is outward of the parent.
+  int child{};                        ///< Which part of the parent: x + 2 y + 4 z.
+  int target{};                       ///< Level of the voxels that are coded in the end.
+  const std::uint8_t* base{};         ///< As `fine`, of the base; null: the block has none.
+  const std::uint8_t* coarse_base{};  ///< As `coarse`, of the base; null: no base, or no parent.
 
   bool test(int feature) const;
 };
@@ -67,7 +73,7 @@ class ContextTrees {
 
   /// The tables in the source. Version: 4 bits; pieces name it, as only equal tables decode.
   static const ContextTrees& built_in();
-  static constexpr std::uint8_t kVersion = 1;
+  static constexpr std::uint8_t kVersion = 2;
 
   /// Reads trees from printable text; every one is a single leaf of one half if the text is not of kDecisions
   /// trees.

@@ -49,10 +49,14 @@ BlockSet coarser(const BlockSet& set) {
 
 std::vector<CoarseBlock> coarse_blocks(const BlockSet& set) {
   std::vector<CoarseBlock> out;
-  for (std::size_t b = 0; b < set.indices.size() && set.level == 2; ++b) {
+  if (set.level > 2) return out;
+  const int shift = 2 - set.level, edge = set.edge();
+  for (std::size_t b = 0; b < set.indices.size(); ++b) {
     CoarseBlock block{set.indices[b], 0, 0};
     for (int i = 0; i < 64; ++i) {
-      const Voxel voxel = set.voxels[64 * b + static_cast<std::size_t>(i)];
+      const int x = i % 4 >> shift, y = i / 4 % 4 >> shift, z = i / 16 >> shift;
+      const auto at = static_cast<std::size_t>(x + edge * (y + edge * z));
+      const Voxel voxel = set.voxels[b * set.voxels_in_block() + at];
       block.known |= static_cast<std::uint64_t>(voxel != Voxel::unknown) << i;
       block.occupied |= static_cast<std::uint64_t>(voxel == Voxel::occupied) << i;
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,11 +25,14 @@ struct BlockSet {
   bool operator==(const BlockSet&) const = default;
 };
 
+/// What the receiver of blocks has of one already, its base; nothing: none, or it is not to be used.
+using FindBase = std::function<std::optional<CoarseBlock>(const BlockIndex&)>;
+
 BlockSet block_set(std::span<const CoarseBlock> blocks);
 BlockSet block_set(std::span<const FineBlock> blocks);
 /// The same blocks one level higher; `set` must not be of level 0.
 BlockSet coarser(const BlockSet& set);
-/// Blocks of a set of level 2 as masks.
+/// Blocks of a set of at most level 2 as masks: all parts of a larger voxel are as it is.
 std::vector<CoarseBlock> coarse_blocks(const BlockSet& set);
 
 }  // namespace adit::perception

@@ -5,13 +5,17 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
+#include "core/checksum/crc32c.hpp"
 #include "perception/map/block_hash.hpp"
 #include "perception/stream/block_coder.hpp"
 #include "perception/stream/block_context.hpp"
 #include "perception/stream/block_index_walk.hpp"
 #include "perception/stream/block_set.hpp"
+#include "perception/stream/block_states.hpp"
 
 namespace adit::perception {
 
@@ -25,46 +29,44 @@ namespace adit::perception {
 template <class Coder>
 class BlockWalk {
  public:
-  /// `max_level`: finer sets are not read.
-  explicit BlockWalk(Coder& coder, int max_level = BlockSet::kLevels - 1)
-      : coder_(coder), max_level_(max_level) {}
+  /// `max_level`: finer sets are not read. `find_base`: see write_blocks().
+  explicit BlockWalk(Coder& coder, int max_level = BlockSet::kLevels - 1, FindBase find_base = {})
+      : coder_(coder), max_level_(max_level), find_base_(std::move(find_base)) {}
 
   /// Writes a set whose blocks are in rising order, different, within BlockIndex::kLimit, and at most
   /// kMaxSetBlocks.
   void write(const BlockSet& set) {
     level_ = set.level;
     indices_ = set.indices;
-    prepare_truth(set);
-    walk();
+    truth_[level_].resize(set.voxels.size());
+    std::transform(set.voxels.begin(), set.voxels.end(), truth_[level_].begin(), BlockStates::state_of);
+    truth_.fill_above(level_);
+    static_cast<void>(walk());
   }
-  /// Reads a set; false if it makes no sense. Takes bounded time and memory whatever the coder returns.
-  bool read(BlockSet& set) {
+  /// What read() found.
+  enum class Read { good, malformed, other_base };
+  /// Reads a set. Takes bounded time and memory whatever the coder returns.
+  Read read(BlockSet& set) {
     indices_.clear();
-    if (!walk()) return false;
+    if (const Read result = walk(); result != Read::good) return result;
     set.level = level_;
     set.indices = indices_;
-    const std::vector<std::uint8_t>& states = coded_[static_cast<std::size_t>(level_)];
+    const States& states = coded_[level_];
     set.voxels.resize(states.size());
     std::transform(states.begin(), states.end(), set.voxels.begin(), [](std::uint8_t s) {
       return (s & kOccupied) != 0 ? Voxel::occupied : (s & kKnown) != 0 ? Voxel::free : Voxel::unknown;
     });
-    return true;
+    return Read::good;
   }
 
  private:
-  using States = std::vector<std::uint8_t>;
+  using States = BlockStates::Level;
   static constexpr int kWidest = 10;
   using Padded = std::array<std::uint8_t, kWidest * kWidest * kWidest>;
   static constexpr std::int32_t kAbsent = -1;
+  static constexpr int kBaseLevel = 2;
 
-  static std::size_t size_at(int level) { return std::size_t{1} << (3 * level); }
-  /// Where part `child` of voxel `parent` is in its block.
-  static std::size_t part_at(std::size_t parent, int child, int level) {
-    const std::size_t edge = std::size_t{1} << level, half = edge / 2;
-    const std::size_t x = parent % half, y = parent / half % half, z = parent / half / half;
-    const auto c = static_cast<std::size_t>(child);
-    return (2 * x + (c & 1)) + edge * (2 * y + (c >> 1 & 1)) + edge * edge * (2 * z + (c >> 2));
-  }
+  static std::size_t size_at(int level) { return BlockStates::size_at(level); }
   static std::size_t in_padded(std::size_t voxel, int level) {
     const std::size_t edge = std::size_t{1} << level, width = edge + 2;
     return voxel % edge + 1 + width * (voxel / edge % edge + 1) + width * width * (voxel / edge / edge + 1);
@@ -74,58 +76,90 @@ class BlockWalk {
     return static_cast<int>((voxel & 1) | (voxel / edge & 1) << 1 | (voxel / edge / edge & 1) << 2);
   }
 
-  void prepare_truth(const BlockSet& set) {
-    States& finest = truth_[static_cast<std::size_t>(level_)];
-    finest.resize(set.voxels.size());
-    std::transform(set.voxels.begin(), set.voxels.end(), finest.begin(), [](Voxel v) -> std::uint8_t {
-      return v == Voxel::unknown ? kUnknown : v == Voxel::free ? kKnown : kKnown | kOccupied;
-    });
-    for (int level = level_; level > 0; --level) {
-      const States& parts = truth_[static_cast<std::size_t>(level)];
-      States& wholes = truth_[static_cast<std::size_t>(level - 1)];
-      const std::size_t size = size_at(level - 1);
-      wholes.assign(indices_.size() * size, 0);
-      for (std::size_t i = 0; i < wholes.size(); ++i) {
-        std::uint8_t any = 0, all = kFull | kKnown;
-        for (int child = 0; child < 8; ++child) {
-          const std::uint8_t part = parts[i / size * 8 * size + part_at(i % size, child, level)];
-          any |= part & (kKnown | kOccupied);
-          if ((part & kKnown) == 0 || (level < level_ && (part & kFull) == 0)) all = 0;
-        }
-        const bool full = (any & kOccupied) == 0 && all != 0;
-        // kFull here means that all voxels at the finest level are free; see is_full().
-        wholes[i] = static_cast<std::uint8_t>(any | (full ? kFull : 0));
-      }
-    }
-  }
   std::uint8_t truth(int level, std::size_t at) const {
-    const States& states = truth_[static_cast<std::size_t>(level)];
-    return states.empty() ? std::uint8_t{0} : states[at];
+    return truth_[level].empty() ? std::uint8_t{0} : truth_[level][at];
   }
   /// Whether all parts of a voxel are known.
   bool is_full(int level, std::size_t block, std::size_t voxel) const {
-    if (truth_[static_cast<std::size_t>(level)].empty()) return false;
+    if (truth_[level].empty()) return false;
     for (int child = 0; child < 8; ++child)
-      if ((truth(level + 1, block * size_at(level + 1) + part_at(voxel, child, level + 1)) & kKnown) == 0)
+      if ((truth(level + 1, block * size_at(level + 1) + BlockStates::part_at(voxel, child, level + 1)) &
+           kKnown) == 0)
         return false;
     return true;
   }
 
-  bool walk() {
+  Read walk() {
     level_ = static_cast<int>(coder_.raw(static_cast<std::uint32_t>(level_), 2));
-    if (level_ > max_level_) return false;
+    if (level_ > max_level_) return Read::malformed;
     none_.fill(kNotCoded);
-    if (!walk_indices(coder_, level_, indices_)) return false;
+    if (!walk_indices(coder_, level_, indices_)) return Read::malformed;
+    if (const Read result = walk_bases(); result != Read::good) return result;
     find_neighbours();
     for (int level = 0; level <= level_; ++level)
-      coded_[static_cast<std::size_t>(level)].assign(indices_.size() * size_at(level), kNotCoded);
+      coded_[level].assign(indices_.size() * size_at(level), kNotCoded);
     for (std::size_t block = 0; block < indices_.size(); ++block) walk_block(block);
     for (int level = 1; level <= level_; ++level) {
       if (level > 1 || level_ > 1)
         for (std::size_t block = 0; block < indices_.size(); ++block) walk_full(block, level);
       for (std::size_t block = 0; block < indices_.size(); ++block) walk_parts(block, level);
     }
+    return Read::good;
+  }
+
+  /// Which blocks have a base, and a checksum of all of these. Bases are of voxels of 0.2 m.
+  Read walk_bases() {
+    has_base_.assign(indices_.size(), false);
+    if (level_ != kBaseLevel || indices_.empty()) return Read::good;
+    const bool writes = !truth_[level_].empty();
+    std::vector<std::optional<CoarseBlock>> bases(indices_.size());
+    std::size_t count = 0;
+    for (std::size_t block = 0; block < indices_.size() && writes && find_base_; ++block) {
+      bases[block] = find_base_(indices_[block]);
+      has_base_[block] = bases[block] && is_known_of(block, bases[block]->known);
+      if (!has_base_[block]) bases[block].reset();
+      count += has_base_[block] ? 1 : 0;
+    }
+    // None, all, or a bit for each block.
+    const std::uint32_t which = coder_.raw(count == 0 ? 0 : count == indices_.size() ? 1 : 2, 2);
+    if (which > 2) return Read::malformed;
+    if (which == 0) return Read::good;
+    for (std::size_t block = 0; block < indices_.size(); ++block) {
+      has_base_[block] = which == 1 || coder_.raw(has_base_[block] ? 1 : 0, 1) != 0;
+      if (!has_base_[block] || writes) continue;
+      if (find_base_) bases[block] = find_base_(indices_[block]);
+      if (!bases[block]) return Read::other_base;
+    }
+    const std::uint32_t sum = checksum_of(bases);
+    if (coder_.raw(sum, 32) != sum) return Read::other_base;
+    States& finest = base_[level_];
+    finest.assign(indices_.size() * size_at(level_), kNotCoded);
+    for (std::size_t block = 0; block < indices_.size(); ++block)
+      for (std::size_t i = 0; bases[block] && i < size_at(level_); ++i)
+        finest[block * size_at(level_) + i] = static_cast<std::uint8_t>(
+            (bases[block]->known >> i & 1) * kKnown + (bases[block]->occupied >> i & 1) * kOccupied);
+    base_.fill_above(level_);
+    return Read::good;
+  }
+  /// Whether the set knows these voxels of a block.
+  bool is_known_of(std::size_t block, std::uint64_t known) const {
+    for (std::size_t i = 0; i < size_at(level_); ++i)
+      if ((known >> i & 1) != 0 && (truth(level_, block * size_at(level_) + i) & kKnown) == 0) return false;
     return true;
+  }
+  static std::uint32_t checksum_of(const std::vector<std::optional<CoarseBlock>>& bases) {
+    std::vector<std::uint8_t> bytes;
+    for (const std::optional<CoarseBlock>& base : bases)
+      for (int i = 0; base && i < 16; ++i)
+        bytes.push_back(static_cast<std::uint8_t>((i < 8 ? base->known : base->occupied) >> 8 * (i % 8)));
+    return crc32c(bytes);
+  }
+  /// The number of a decision about a block.
+  int decision_of(std::size_t block, int decision) const {
+    return has_base_[block] ? with_base(decision) : decision;
+  }
+  bool is_known_in_base(std::size_t block, int level, std::size_t voxel) const {
+    return has_base_[block] && (base_[level][block * size_at(level) + voxel] & kKnown) != 0;
   }
 
   void find_neighbours() {
@@ -144,9 +178,9 @@ class BlockWalk {
   }
 
   /// Copies a level of a block with a margin of one voxel of its neighbours.
-  void pad(int level, std::size_t block, Padded& out) const {
+  void pad(const BlockStates& of, int level, std::size_t block, Padded& out) const {
     const int edge = 1 << level;
-    const States& states = coded_[static_cast<std::size_t>(level)];
+    const States& states = of[level];
     std::size_t at = 0;
     for (int z = -1; z <= edge; ++z)
       for (int y = -1; y <= edge; ++y)
@@ -176,18 +210,28 @@ class BlockWalk {
 
   void walk_block(std::size_t block) {
     coder_.begin(block);
-    pad(0, block, fine_);
-    const VoxelContext context{&fine_[13], &steps_at(0, 7), &none_[13], &steps_at(0, 7), 0, level_};
+    pad(coded_, 0, block, fine_);
+    if (has_base_[block]) pad(base_, 0, block, base_fine_);
+    const VoxelContext context{&fine_[13],
+                               &steps_at(0, 7),
+                               &none_[13],
+                               &steps_at(0, 7),
+                               0,
+                               level_,
+                               has_base_[block] ? &base_fine_[13] : nullptr,
+                               nullptr};
     const std::uint8_t is = truth(0, block);
     std::uint8_t& state = coded_[0][block];
     state = kUnknown;
-    if (!coder_.decide(block_known, context, (is & kKnown) != 0)) return;
+    if (!is_known_in_base(block, 0, 0) &&
+        !coder_.decide(decision_of(block, block_known), context, (is & kKnown) != 0))
+      return;
     state = kKnown;
-    if (coder_.decide(block_occupied, context, (is & kOccupied) != 0)) {
+    if (coder_.decide(decision_of(block, block_occupied), context, (is & kOccupied) != 0)) {
       state |= kOccupied;
-    } else if (level_ > 0 && coder_.decide(block_uniform, context, (is & kFull) != 0)) {
+    } else if (level_ > 0 && coder_.decide(decision_of(block, block_uniform), context, (is & kFull) != 0)) {
       for (int level = 0; level <= level_; ++level) {
-        States& states = coded_[static_cast<std::size_t>(level)];
+        States& states = coded_[level];
         const auto first = states.begin() + static_cast<std::ptrdiff_t>(block * size_at(level));
         std::fill_n(first, size_at(level),
                     static_cast<std::uint8_t>(level < level_ ? kKnown | kFull : kKnown));
@@ -196,31 +240,35 @@ class BlockWalk {
   }
 
   /// Whether all voxels of a block are known to both sides.
-  bool is_done(std::size_t block) const {
-    return coded_[static_cast<std::size_t>(level_)][block * size_at(level_)] != kNotCoded;
-  }
+  bool is_done(std::size_t block) const { return coded_[level_][block * size_at(level_)] != kNotCoded; }
 
   /// For each free voxel of the level above: are all its parts known?
   void walk_full(std::size_t block, int level) {
     if (coded_[0][block] == kUnknown || is_done(block)) return;
     coder_.begin(block);
     const int above = level - 1;
-    pad(above, block, fine_);
-    if (above > 0) pad(above - 1, block, coarse_);
-    States& states = coded_[static_cast<std::size_t>(above)];
+    pad(coded_, above, block, fine_);
+    if (above > 0) pad(coded_, above - 1, block, coarse_);
+    const bool has_base = has_base_[block];
+    if (has_base) pad(base_, above, block, base_fine_);
+    if (has_base && above > 0) pad(base_, above - 1, block, base_coarse_);
+    States& states = coded_[above];
     for (std::size_t voxel = 0; voxel < size_at(above); ++voxel) {
       std::uint8_t& state = states[block * size_at(above) + voxel];
       if (state != kKnown) continue;
       const std::size_t at = in_padded(voxel, above);
       const int octant = above > 0 ? octant_of(voxel, above) : 0;
-      const VoxelContext context{
-          &fine_[at],
-          &steps_at(above, 7),
-          above > 0 ? &coarse_[in_padded(parent_of(voxel, above), above - 1)] : &none_[13],
-          above > 0 ? &steps_at(above - 1, octant) : &steps_at(0, 7),
-          octant,
-          level_};
-      if (!coder_.decide(decision_at(all_parts_known, level), context, is_full(above, block, voxel)))
+      const std::size_t parent = above > 0 ? in_padded(parent_of(voxel, above), above - 1) : 0;
+      const VoxelContext context{&fine_[at],
+                                 &steps_at(above, 7),
+                                 above > 0 ? &coarse_[parent] : &none_[13],
+                                 above > 0 ? &steps_at(above - 1, octant) : &steps_at(0, 7),
+                                 octant,
+                                 level_,
+                                 has_base ? &base_fine_[at] : nullptr,
+                                 has_base && above > 0 ? &base_coarse_[parent] : nullptr};
+      if (!coder_.decide(decision_of(block, decision_at(all_parts_known, level)), context,
+                         is_full(above, block, voxel)))
         continue;
       state |= kFull;
       fine_[at] = state;
@@ -235,42 +283,51 @@ class BlockWalk {
     if (coded_[0][block] != kUnknown && is_done(block)) return;
     coder_.begin(block);
     const std::size_t first = block * size_at(level);
-    States& parts = coded_[static_cast<std::size_t>(level)];
+    States& parts = coded_[level];
     if (coded_[0][block] == kUnknown) {
       std::fill_n(parts.begin() + static_cast<std::ptrdiff_t>(first), size_at(level), kUnknown);
       return;
     }
-    pad(level, block, fine_);
-    pad(level - 1, block, coarse_);
+    pad(coded_, level, block, fine_);
+    pad(coded_, level - 1, block, coarse_);
+    const bool has_base = has_base_[block];
+    if (has_base) pad(base_, level, block, base_fine_), pad(base_, level - 1, block, base_coarse_);
     for (std::size_t parent = 0; parent < size_at(level - 1); ++parent) {
       const std::size_t above = in_padded(parent, level - 1);
       const std::uint8_t whole = coarse_[above];
       std::uint8_t seen = 0;
       for (int child = 0; child < 8; ++child) {
-        const std::size_t voxel = part_at(parent, child, level);
+        const std::size_t voxel = BlockStates::part_at(parent, child, level);
         const std::size_t at = in_padded(voxel, level);
         const std::uint8_t is = truth(level, first + voxel);
         std::uint8_t state = kUnknown;
         if ((whole & kFull) != 0) {
           state = kKnown;
         } else if ((whole & kKnown) != 0) {
-          const VoxelContext context{
-              &fine_[at], &steps_at(level, 7), &coarse_[above], &steps_at(level - 1, child), child, level_};
-          const bool last = child == 7;
+          const VoxelContext context{&fine_[at],
+                                     &steps_at(level, 7),
+                                     &coarse_[above],
+                                     &steps_at(level - 1, child),
+                                     child,
+                                     level_,
+                                     has_base ? &base_fine_[at] : nullptr,
+                                     has_base ? &base_coarse_[above] : nullptr};
+          const bool last = child == 7, had = is_known_in_base(block, level, voxel);
           if ((whole & kOccupied) == 0) {
             // Some part is known, and if the level above could say that all are, not all of them.
-            const bool known =
-                last && (seen & 0x7f) == 0 ? true
-                : last && (seen & 0x7f) == 0x7f
-                    ? false
-                    : coder_.decide(decision_at(part_known_of_free, level), context, (is & kKnown) != 0);
+            const bool known = had || (last && (seen & 0x7f) == 0) ? true
+                               : last && (seen & 0x7f) == 0x7f
+                                   ? false
+                                   : coder_.decide(decision_of(block, decision_at(part_known_of_free, level)),
+                                                   context, (is & kKnown) != 0);
             if (known) seen |= static_cast<std::uint8_t>(1u << child);
             state = known ? kKnown : kUnknown;
           } else if (last && seen == 0) {
             state = kKnown | kOccupied;
-          } else if (coder_.decide(decision_at(part_known_of_occupied, level), context, (is & kKnown) != 0)) {
-            const bool occupied =
-                coder_.decide(decision_at(part_occupied, level), context, (is & kOccupied) != 0);
+          } else if (had || coder_.decide(decision_of(block, decision_at(part_known_of_occupied, level)),
+                                          context, (is & kKnown) != 0)) {
+            const bool occupied = coder_.decide(decision_of(block, decision_at(part_occupied, level)),
+                                                context, (is & kOccupied) != 0);
             state = occupied ? kKnown | kOccupied : kKnown;
             if (occupied) seen = 1;
           }
@@ -286,9 +343,10 @@ class BlockWalk {
   int level_{0};
   std::vector<BlockIndex> indices_{};
   std::vector<std::array<std::int32_t, 27>> neighbours_{};
-  std::array<States, BlockSet::kLevels> truth_{};
-  std::array<States, BlockSet::kLevels> coded_{};
-  Padded fine_{}, coarse_{};
+  FindBase find_base_;
+  std::vector<bool> has_base_{};
+  BlockStates truth_{}, base_{}, coded_{};
+  Padded fine_{}, coarse_{}, base_fine_{}, base_coarse_{};
   std::array<std::uint8_t, 27> none_{};
 };
 

@@ -19,13 +19,13 @@
 namespace adit::perception {
 namespace {
 
-constexpr std::uint8_t kVersion = 3;
+constexpr std::uint8_t kVersion = 4;
 constexpr std::uint8_t kBlocks = 1, kPoses = 2;
 constexpr std::size_t kHeader = 2;  ///< Version, and kind with the version of the coder's tables above it.
 constexpr std::size_t kBlocksHeader = 6;  ///< The same, and the checksum.
 constexpr std::uint8_t kBlocksKind = kBlocks | ContextTrees::kVersion << 4;
 constexpr int kLevel = 3;  ///< Higher levels of Zstandard gain less than 1 % on a piece.
-constexpr int kBlockLevel = 2;
+constexpr int kFinestLevel = 2, kCoarsestLevel = 1;
 constexpr double kPositionUnit = 1e-3, kQuaternionUnit = 1e-5;
 constexpr double kMaxPosition = 1e5;  ///< m
 
@@ -86,8 +86,8 @@ std::uint32_t read_wide(RangeDecoder& from) {
 }
 
 /// `bits`: if given, gets what each block took.
-std::vector<std::uint8_t> encode_blocks(const SubmapKey& key, std::span<const BlockUpdate> blocks,
-                                        std::vector<std::uint32_t>* bits) {
+std::vector<std::uint8_t> encode_blocks(const SubmapKey& key, std::span<const BlockUpdate> blocks, int level,
+                                        const FindBase& find_base, std::vector<std::uint32_t>* bits) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < blocks.size(); ++i)
     if (is_within_limit(blocks[i].block.index)) order.push_back(i);
@@ -115,7 +115,9 @@ std::vector<std::uint8_t> encode_blocks(const SubmapKey& key, std::span<const Bl
   const int width = order.empty() ? 0 : std::bit_width(newest - oldest);
   encoder.bits(static_cast<std::uint32_t>(width), 6);
   std::vector<std::uint32_t> taken;
-  write_blocks(encoder, block_set(std::span<const CoarseBlock>(sorted)), bits != nullptr ? &taken : nullptr);
+  BlockSet set = block_set(std::span<const CoarseBlock>(sorted));
+  while (set.level > std::clamp(level, kCoarsestLevel, kFinestLevel)) set = coarser(set);
+  write_blocks(encoder, set, find_base, bits != nullptr ? &taken : nullptr);
   for (const std::size_t i : order) encoder.bits(newest - blocks[i].revision, width);
   if (bits != nullptr) {
     bits->assign(blocks.size(), 0);
@@ -140,12 +142,13 @@ constexpr int kPackAttempts = 4;
 
 }  // namespace
 
-std::vector<std::uint8_t> encode(const MapPiece& piece) {
+std::vector<std::uint8_t> encode(const MapPiece& piece, const FindBase& find_base) {
   const std::span<const BlockUpdate> blocks(piece.blocks);
-  return encode_blocks(piece.key, blocks.first(std::min(blocks.size(), kMaxPieceBlocks)), nullptr);
+  return encode_blocks(piece.key, blocks.first(std::min(blocks.size(), kMaxPieceBlocks)), piece.level,
+                       find_base, nullptr);
 }
 
-Result<MapPiece> decode(std::span<const std::uint8_t> bytes) {
+Result<MapPiece> decode(std::span<const std::uint8_t> bytes, const FindStored& find_stored) {
   if (bytes.size() <= kBlocksHeader) return {Reason::malformed, "a piece of the map is too short"};
   if (bytes[0] != kVersion) return {Reason::wrong_protocol, "a piece of the map has another version"};
   if ((bytes[1] & 0xf) != kBlocks || bytes.size() > kMaxPieceContent)
@@ -162,8 +165,11 @@ Result<MapPiece> decode(std::span<const std::uint8_t> bytes) {
   const std::uint32_t newest = read_wide(decoder);
   const int width = static_cast<int>(decoder.bits(6));
   if (width > 32) return malformed("its revisions");
-  const auto set = read_blocks(decoder, kBlockLevel);
-  if (!set || set->level != kBlockLevel) return malformed("its blocks");
+  const auto find_base = [&](const BlockIndex& index) { return find_stored(piece.key, index); };
+  const auto set = read_blocks(decoder, kFinestLevel, find_stored ? FindBase(find_base) : FindBase());
+  if (!set && set.reason() == Reason::out_of_range) return set.error();
+  if (!set || set->level < kCoarsestLevel) return malformed("its blocks");
+  piece.level = set->level;
   for (const CoarseBlock& block : coarse_blocks(*set)) {
     const std::uint32_t older = decoder.bits(width);
     if (older > newest) return malformed("a block's revision");
@@ -172,7 +178,8 @@ Result<MapPiece> decode(std::span<const std::uint8_t> bytes) {
   return piece;
 }
 
-PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes) {
+PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes, int level,
+                 const FindBase& find_base) {
   blocks = blocks.first(std::min(blocks.size(), kMaxPieceBlocks));
   PackedPiece best{};
   std::size_t too_many = blocks.size() + 1;
@@ -180,7 +187,7 @@ PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std:
   std::size_t count = std::min(blocks.size(), std::max<std::size_t>(1, max_bytes / 4));
   for (int attempt = 0; count > best.count && count < too_many; ++attempt) {
     std::vector<std::uint32_t> bits;
-    std::vector<std::uint8_t> bytes = encode_blocks(key, blocks.first(count), &bits);
+    std::vector<std::uint8_t> bytes = encode_blocks(key, blocks.first(count), level, find_base, &bits);
     const std::size_t size = bytes.size();
     if (size <= max_bytes) {
       best = {std::move(bytes), count};

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/geometry/pose.hpp"
 #include "core/result/result.hpp"
 #include "perception/map/block.hpp"
+#include "perception/stream/block_set.hpp"
 #include "perception/types/submap_key.hpp"
 
-/// Content of the map for the radio, as bytes. Each piece can be decoded alone, is bounded, and has a
-/// checksum, so that a damaged piece is refused. Blocks are coded as in block_coder.hpp, poses compressed
-/// with Zstandard. What is decoded comes from anyone: every value is checked, and nothing larger than
-/// kMaxPieceBlocks blocks or kMaxPieceContent bytes is unpacked.
+/// Content of the map for the radio, as bytes. Each piece can be decoded alone, or with what its receivers
+/// acknowledged before; it is bounded, and has a checksum, so that a damaged piece is refused. Blocks are
+/// coded as in block_coder.hpp, poses compressed with Zstandard. What is decoded comes from anyone: every
+/// value is checked, and nothing larger than kMaxPieceBlocks blocks or kMaxPieceContent bytes is unpacked.
 namespace adit::perception {
 
 constexpr std::size_t kMaxPieceBytes = 1200;
@@ -32,6 +35,7 @@ struct BlockUpdate {
 struct MapPiece {
   SubmapKey key{};
   std::vector<BlockUpdate> blocks{};
+  int level{2};  ///< 2: voxels of 0.2 m; 1: of 0.4 m, all eight parts of one the same.
 };
 
 /// Place of a submap.
@@ -48,13 +52,17 @@ struct SubmapPoses {
 
 /// Encodes a piece; blocks beyond kMaxPieceBlocks or BlockIndex::kLimit are left out, and older states of a
 /// block that is there twice. May be longer than kMaxPieceBytes: see pack(). Equal revisions take no space.
-std::vector<std::uint8_t> encode(const MapPiece& piece);
+/// `find_base`: an older state of a block of level 2 that all receivers have, see write_blocks().
+std::vector<std::uint8_t> encode(const MapPiece& piece, const FindBase& find_base = {});
 std::vector<std::uint8_t> encode(const SubmapPoses& poses);
 
+/// What is here of a block of a submap; nothing: it is not here.
+using FindStored = std::function<std::optional<CoarseBlock>(const SubmapKey&, const BlockIndex&)>;
+
 /// Decodes a piece; its blocks are in rising order. Reason::wrong_protocol for another version, of the piece
-/// or of the coder's tables, malformed for everything else that is wrong: other kind, damaged, too large,
-/// indices beyond BlockIndex::kLimit.
-Result<MapPiece> decode(std::span<const std::uint8_t> bytes);
+/// or of the coder's tables, out_of_range for changes of blocks of which another state is here, malformed for
+/// everything else that is wrong: other kind, damaged, too large, indices beyond BlockIndex::kLimit.
+Result<MapPiece> decode(std::span<const std::uint8_t> bytes, const FindStored& find_stored = {});
 Result<SubmapPoses> decode_poses(std::span<const std::uint8_t> bytes);
 
 struct PackedPiece {
@@ -63,7 +71,9 @@ struct PackedPiece {
 };
 
 /// Packs as many of the first blocks as fit into `max_bytes` (at least 100), within 5 % or so; they are
-/// encoded two or three times for it. Blocks that are neighbours take least.
-PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes);
+/// encoded two or three times for it. Blocks that are neighbours take least. `level`, `find_base`: see
+/// MapPiece and encode().
+PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes,
+                 int level = 2, const FindBase& find_base = {});
 
 }  // namespace adit::perception

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "perception/stream/piece.hpp"
 #include "robot_agent/perception/block_source.hpp"
@@ -23,6 +24,15 @@ constexpr Duration kPieceRest = 200ms;      // Between two looks when there is n
 constexpr Duration kFocusRest = 1s;         // Between two looks at the focus when it lacks nothing.
 constexpr std::uint64_t kChangedEvery = 4;  // One piece of so many is for changed blocks first.
 
+/// The bits of the three numbers in turn: what is near in this order is near in space (Morton 1966).
+std::uint64_t z_order(const perception::BlockIndex& index) {
+  std::uint64_t out = 0;
+  for (int bit = 15; bit >= 0; --bit)
+    for (const std::int32_t axis : {index.x, index.y, index.z})
+      out = out << 1 | (static_cast<std::uint32_t>(axis + perception::BlockIndex::kLimit) >> bit & 1);
+  return out;
+}
+
 }  // namespace
 
 /// Candidates for a piece, those first that should go first.
@@ -35,6 +45,17 @@ struct BlockSource::Choice {
   std::set<Cell> focused{};
 
   void add(const Cell& cell, bool late) { all.push_back({cell, late}); }
+  /// Puts those from `first` to `last` into an order in which neighbours follow each other, from the one that
+  /// is first now on: in a piece, neighbours take least.
+  void gather(std::size_t first, std::size_t last) {
+    if (first == last) return;
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = all.begin() + static_cast<std::ptrdiff_t>(last);
+    const auto key = [](const Candidate& c) { return std::pair(c.cell.group, z_order(c.cell.index)); };
+    const auto from = key(*begin);
+    std::sort(begin, end, [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    std::rotate(begin, std::find_if(begin, end, [&](const auto& c) { return key(c) == from; }), end);
+  }
   /// Those of one group: of the first one that is late, or else of which there are most.
   std::vector<Candidate> of_one_group() const {
     std::map<std::uint64_t, std::size_t> count;
@@ -51,9 +72,11 @@ struct BlockSource::Choice {
   }
 };
 
-BlockSource::Due BlockSource::due(const Cell& cell, Duration rest, Duration flush, Duration latest,
-                                  Time now) const {
+BlockSource::Due BlockSource::due(const Peer& peer, const Cell& cell, Duration rest, Duration flush,
+                                  Duration latest, Time now) const {
   const Place& place = cells_.at(cell);
+  // When it has arrived, what changed since is enough.
+  if (place.is_on_its_way(peer.bit)) return Due::no;
   const Duration quiet = now - place.changed;
   if (!place.waits_since || now - *place.waits_since >= latest || quiet >= flush) return Due::late;
   return quiet >= rest ? Due::yes : Due::no;
@@ -90,7 +113,9 @@ std::size_t BlockSource::add_slice(const Peer& peer, const BlockRegion& region, 
     const auto& [cell, place] = *it;
     if (cell.index.x != x || cell.index.y > region.high.y) break;
     if (cell.index.z < region.low.z || cell.index.z > region.high.z) continue;
-    if (peer.unseen.contains(place.change) && out.focused.insert(cell).second) out.add(cell, true);
+    if (peer.unseen.contains(place.change) && !place.is_on_its_way(peer.bit) &&
+        out.focused.insert(cell).second)
+      out.add(cell, true);
   }
   return looked;
 }
@@ -116,7 +141,7 @@ void BlockSource::add_unseen(const Peer& peer, Duration wait, Time now, Choice& 
   const bool behind = peer.unseen.size() > kBacklog;
   std::size_t looked = 0;
   for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < kLookedAt; ++it, ++looked) {
-    const Due is_due = due(it->second, params_.settle, wait, wait, now);
+    const Due is_due = due(peer, it->second, params_.settle, wait, wait, now);
     if (is_due != Due::no && !out.focused.contains(it->second))
       out.add(it->second, behind || is_due == Due::late);
   }
@@ -127,17 +152,39 @@ void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
   std::size_t looked = 0, added = 0;
   for (auto it = peer.changed.begin();
        it != peer.changed.end() && looked < kLookedAt && added < kBlocksInPiece; ++looked) {
-    const Due is_due = due(it->second, params_.hold, 2 * params_.hold, params_.max_hold, now);
+    const Due is_due = due(peer, it->second, params_.hold, 2 * params_.hold, params_.max_hold, now);
     if (is_due != Due::no) out.add(it->second, is_due == Due::late), ++added;
     ++it;
   }
   if (added == 0) peer.changed_rests_until = now + kRest;
 }
 
+bool BlockSource::is_coarse_first(const Peer& peer, std::size_t max_bytes) const {
+  return whole_bytes_ * static_cast<double>(peer.unseen.size()) >
+         static_cast<double>(kCoarsePieces * max_bytes);
+}
+
+std::vector<BlockSource::Cell> BlockSource::choose_coarse(Peer& peer) {
+  Choice choice;
+  for (auto it = peer.unseen.lower_bound(peer.coarse_below);
+       it != peer.unseen.begin() && choice.all.size() < kLookedAt;) {
+    --it;
+    const Place& place = cells_.at(it->second);
+    const bool lacks = ((place.coarse_by | place.seen_by | place.up_to_date) & peer.bit) == 0;
+    if (lacks) choice.add(it->second, true);
+    if (choice.all.empty()) peer.coarse_below = it->first;
+  }
+  if (choice.all.empty()) return {};
+  choice.gather(0, choice.all.size());
+  std::vector<Cell> out;
+  for (const Choice::Candidate& candidate : choice.of_one_group()) out.push_back(candidate.cell);
+  return out;
+}
+
 std::vector<BlockSource::Cell> BlockSource::choose(Peer& peer, std::size_t max_bytes, Time now) {
   if (peer.rests_until && now < *peer.rests_until) return {};
   Choice choice;
-  const int longer = max_bytes < kSmallPiece ? 3 : 1;
+  const int longer = max_bytes < kSmallPiece ? 4 : 1;
   const bool behind = peer.unseen.size() > kBacklog;
   const bool changed_first = (tokens_ + 1) % kChangedEvery == 0;
   if (changed_first) add_changed(peer, now, choice);
@@ -148,17 +195,20 @@ std::vector<BlockSource::Cell> BlockSource::choose(Peer& peer, std::size_t max_b
   // Free space shows an operator less than surfaces.
   const auto is_surface = [this](const auto& candidate) { return cells_.at(candidate.cell).occupied != 0; };
   std::stable_partition(choice.all.begin() + first, choice.all.begin() + focused, is_surface);
-  std::stable_partition(choice.all.begin() + focused, choice.all.end(), is_surface);
+  const auto free = std::stable_partition(choice.all.begin() + focused, choice.all.end(), is_surface);
+  if (behind)
+    choice.gather(static_cast<std::size_t>(focused), static_cast<std::size_t>(free - choice.all.begin()));
   if (!changed_first) add_changed(peer, now, choice);
   std::vector<Cell> out;
   if (!choice.all.empty()) {
     bool late = false;
+    double bytes = 0.0;
     for (const Choice::Candidate& candidate : choice.of_one_group()) {
       out.push_back(candidate.cell);
       late = late || candidate.late;
+      bytes += cells_.at(candidate.cell).has_base(peer.bit) ? change_bytes_ : whole_bytes_;
     }
-    const bool full =
-        block_bytes_ * static_cast<double>(out.size()) >= params_.fill * static_cast<double>(max_bytes);
+    const bool full = bytes >= params_.fill * static_cast<double>(max_bytes);
     if (full || (late && (behind || !peer.round_ends || now >= *peer.round_ends))) {
       if (!full) peer.round_ends = now + longer * params_.round;
       return out;

@@ -28,6 +28,23 @@ std::uint64_t halved(std::uint64_t voxels) {
 
 }  // namespace
 
+void BlockSource::Place::acknowledge(std::uint16_t by) {
+  had_by |= by;
+  seen_by |= by;
+  if (base_change != sent_change) {
+    base_known = sent_known;
+    base_occupied = sent_occupied;
+    base_change = sent_change;
+    base_by = missed_by = 0;
+  }
+  base_by |= by;
+}
+
+void BlockSource::Place::forget(std::uint16_t peer) {
+  for (std::uint16_t* by : {&up_to_date, &had_by, &base_by, &missed_by, &seen_by, &coarse_by})
+    *by = static_cast<std::uint16_t>(*by & ~peer);
+}
+
 void BlockSource::open(std::uint32_t submap, const SubmapPlace& place) {
   names_[submap] = place;
   first_.try_emplace(place.group, submap);
@@ -151,7 +168,7 @@ void BlockSource::has(const PeerId& id, const std::set<std::uint32_t>& submaps) 
       continue;
     }
     place.up_to_date |= peer.bit;
-    place.had_by |= peer.bit;
+    place.acknowledge(peer.bit);
     peer.forget(place.change);
   }
 }
@@ -239,11 +256,7 @@ void BlockSource::join(const PeerId& id) {
 void BlockSource::leave(const PeerId& id) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
-  const auto others = static_cast<std::uint16_t>(~found->second.bit);
-  for (auto& [cell, place] : cells_) {
-    place.had_by &= others;
-    place.up_to_date &= others;
-  }
+  for (auto& [cell, place] : cells_) place.forget(found->second.bit);
   peers_.erase(found);
 }
 
@@ -255,57 +268,87 @@ std::size_t BlockSource::missing(const PeerId& id) const {
 std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerId> peers,
                                                            std::size_t max_bytes, Time now) {
   now_ = now;
+  std::uint16_t to = 0;
+  for (const PeerId& id : peers)
+    if (const auto peer = peers_.find(id); peer != peers_.end()) to |= peer->second.bit;
   std::vector<Cell> chosen;
+  bool coarse = false;
   // What the one that lacks most lacks may have to wait, while another one lacks what is due.
-  for (auto id = peers.begin(); id != peers.end() && chosen.empty(); ++id)
-    if (const auto peer = peers_.find(*id); peer != peers_.end())
-      chosen = choose(peer->second, max_bytes, now);
+  for (auto id = peers.begin(); id != peers.end() && chosen.empty(); ++id) {
+    const auto peer = peers_.find(*id);
+    if (peer == peers_.end()) continue;
+    if (is_coarse_first(peer->second, max_bytes)) chosen = choose_coarse(peer->second);
+    coarse = !chosen.empty();
+    if (!coarse) chosen = choose(peer->second, max_bytes, now);
+  }
   if (chosen.empty()) return std::nullopt;
   const auto named = first_.find(chosen.front().group);
   const std::uint32_t submap =
       named != first_.end() ? named->second : static_cast<std::uint32_t>(chosen.front().group);
-  // One revision for all blocks takes no space. The newest one will do: whatever changes one of them later is
-  // newer still.
-  const auto newest = static_cast<std::uint32_t>(changes_);
+  // One revision for all blocks takes no space, and is newer than all that was sent before.
+  const auto newest = static_cast<std::uint32_t>(++changes_);
   std::vector<BlockUpdate> updates;
   for (const Cell& cell : chosen) {
     const Place& place = cells_.at(cell);
     updates.push_back({{ref_in(cell, submap).index, place.known, place.occupied}, newest});
   }
+  const auto find_base = [&](const BlockIndex& index) -> std::optional<perception::CoarseBlock> {
+    const Place& place = cells_.at(cell_of({submap, index}));
+    if (!place.has_base(to)) return std::nullopt;
+    return perception::CoarseBlock{index, place.base_known, place.base_occupied};
+  };
   const SubmapPlace name = place_of(submap);
-  auto packed = perception::pack({params_.robot, name.start, name.index}, updates, max_bytes);
+  auto packed = perception::pack({params_.robot, name.start, name.index}, updates, max_bytes, coarse ? 1 : 2,
+                                 coarse ? perception::FindBase() : find_base);
   if (packed.count == 0) return std::nullopt;
-  block_bytes_ += kLearned * (static_cast<double>(packed.bytes.size()) / static_cast<double>(packed.count) -
-                              block_bytes_);
-  std::vector<Part>& parts = flights_[++tokens_];
-  for (std::size_t i = 0; i < packed.count; ++i) {
-    Place& place = cells_.at(chosen[i]);
-    place.waits_since.reset();
-    place.sent_known = place.known;
-    place.sent_occupied = place.occupied;
-    place.sent_change = place.change;
-    place.up_to_date = place.had_by = 0;
-    parts.push_back({chosen[i], place.change});
-    for (const PeerId& id : peers)
-      if (const auto peer = peers_.find(id); peer != peers_.end()) {
-        place.up_to_date |= peer->second.bit;
-        peer->second.forget(place.change);
-      }
-    // A peer that is silent now has an older state, or none.
-    for (auto& [id, peer] : peers_)
-      if ((place.up_to_date & peer.bit) == 0) add_missing(peer, chosen[i], place);
+  chosen.resize(packed.count);
+  if (!coarse) learn(chosen, to, packed.bytes.size());
+  Flight& flight = flights_[++tokens_];
+  flight.coarse = coarse;
+  for (const Cell& cell : chosen) {
+    Place& place = cells_.at(cell);
+    flight.parts.push_back({cell, place.change});
+    if (coarse)
+      place.coarse_by |= to;
+    else
+      note_sent(cell, place, to);
   }
   return Content{tokens_, std::move(packed.bytes)};
+}
+
+void BlockSource::learn(const std::vector<Cell>& sent, std::uint16_t to, std::size_t bytes) {
+  const auto changes = static_cast<double>(std::count_if(
+      sent.begin(), sent.end(), [&](const Cell& cell) { return cells_.at(cell).has_base(to); }));
+  const double wholes = static_cast<double>(sent.size()) - changes;
+  const double expected = wholes * whole_bytes_ + changes * change_bytes_;
+  const double factor = static_cast<double>(bytes) / expected - 1.0;
+  whole_bytes_ *= 1.0 + kLearned * factor * wholes * whole_bytes_ / expected;
+  change_bytes_ *= 1.0 + kLearned * factor * changes * change_bytes_ / expected;
+}
+
+void BlockSource::note_sent(const Cell& cell, Place& place, std::uint16_t to) {
+  place.waits_since.reset();
+  place.sent_known = place.known;
+  place.sent_occupied = place.occupied;
+  place.sent_change = place.change;
+  place.up_to_date = to;
+  place.had_by = 0;
+  for (auto& [id, peer] : peers_) {
+    if ((to & peer.bit) != 0)
+      peer.forget(place.change);
+    else
+      add_missing(peer, cell, place);  // A peer that is silent now has an older state, or none.
+  }
 }
 
 void BlockSource::acknowledged(const PeerId& id, std::uint64_t token) {
   const auto peer = peers_.find(id);
   const auto flight = flights_.find(token);
   if (peer == peers_.end() || flight == flights_.end()) return;
-  for (const Part& part : flight->second) {
+  for (const Part& part : flight->second.parts) {
     const auto place = cells_.find(part.cell);
-    if (place != cells_.end() && place->second.sent_change == part.change)
-      place->second.had_by |= peer->second.bit;
+    if (place != cells_.end() && place->second.sent_change == part.change && !flight->second.coarse)
+      place->second.acknowledge(peer->second.bit);
   }
 }
 
@@ -313,12 +356,21 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
   const auto peer = peers_.find(id);
   const auto flight = flights_.find(token);
   if (peer == peers_.end() || flight == flights_.end()) return;
-  for (const Part& part : flight->second) {
+  const std::uint16_t bit = peer->second.bit;
+  for (const Part& part : flight->second.parts) {
     const auto found = cells_.find(part.cell);
     if (found == cells_.end()) continue;
     Place& place = found->second;
+    if (flight->second.coarse) {
+      place.coarse_by &= static_cast<std::uint16_t>(~bit);
+      peer->second.coarse_below = UINT64_MAX;
+      continue;
+    }
     if (place.sent_change != part.change) continue;  // A newer state went out since.
-    place.up_to_date &= static_cast<std::uint16_t>(~peer->second.bit);
+    // Once may be an accident; twice: the peer may have another state than is thought here.
+    if ((place.missed_by & bit) != 0) place.base_by &= static_cast<std::uint16_t>(~bit);
+    place.missed_by |= bit;
+    place.up_to_date &= static_cast<std::uint16_t>(~bit);
     place.waits_since = Time(Duration::min() / 2);  // The hold is for what arrived.
     add_missing(peer->second, part.cell, place);
     peer->second.rests_until.reset();

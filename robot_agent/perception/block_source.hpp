@@ -23,12 +23,12 @@ struct BlockSourceParams {
   // latest after `wait`: while a robot passes, its blocks grow with every scan. A place that shows something
   // else goes after `hold` without a change, at the latest after `max_hold`. It waits until it is part of a
   // full piece, or did not change for twice that time. Pieces that are not full go once in a `round`. On
-  // links with small frames `wait` and `round` are three times as long, as a header takes a third of a piece.
-  Duration settle{1500ms};
-  Duration wait{2s};
-  Duration round{1500ms};
-  Duration hold{20s};
-  Duration max_hold{120s};
+  // links with small frames `wait` and `round` are four times as long, as a header takes a third of a piece.
+  Duration settle{2s};
+  Duration wait{2200ms};
+  Duration round{2s};
+  Duration hold{30s};
+  Duration max_hold{180s};
   double fill{0.8};  ///< Part of a piece from which on it is full, [0, 1].
 };
 
@@ -54,12 +54,15 @@ struct BlockRegion {
 /// if the merge shows something else. Blocks with voxels of 0.4 m of which a station knows nothing go first,
 /// the newest of them first; every fourth piece is for what changed. Blocks wait until they fill a piece,
 /// within the bounds of BlockSourceParams. While a station is behind by more than kBacklog blocks, those in
-/// the focus go before others, and surfaces before free space. All blocks of a piece are of one group. The
-/// map outlives the component that makes it. Submaps are numbered by age.
+/// the focus go before others, and surfaces before free space; while it is behind by more than kCoarsePieces
+/// pieces, it first gets voxels of 0.4 m of all that it lacks. Of a block whose last state it acknowledged, a
+/// station is sent what changed. All blocks of a piece are of one group. The map outlives the component that
+/// makes it. Submaps are numbered by age.
 class BlockSource final : public transfer::Source {
  public:
   static constexpr std::size_t kMaxPeers = 16;
   static constexpr std::size_t kBacklog = perception::kMaxPieceBlocks;
+  static constexpr std::size_t kCoarsePieces = 64;
 
   explicit BlockSource(BlockSourceParams params) : params_(std::move(params)) {}
 
@@ -137,12 +140,24 @@ class BlockSource final : public transfer::Source {
     std::uint64_t known{}, occupied{};     ///< The merge of all of them.
     std::uint64_t change{};                ///< Number of its last change.
     std::uint64_t sent_known{}, sent_occupied{}, sent_change{};  ///< As it was sent last.
-    std::uint16_t up_to_date{};         ///< Bit of each peer to which that went, unless it was lost.
-    std::uint16_t had_by{};             ///< Bit of each peer that acknowledged that.
+    std::uint16_t up_to_date{};  ///< Bit of each peer to which that went, unless it was lost.
+    std::uint16_t had_by{};      ///< Bit of each peer that acknowledged that.
+    std::uint64_t base_known{}, base_occupied{}, base_change{};  ///< As it was acknowledged last.
+    std::uint16_t base_by{};    ///< Bit of each peer that has exactly that, as far as is known.
+    std::uint16_t missed_by{};  ///< Bit of each peer for which changes to that were lost once.
+    std::uint16_t seen_by{};    ///< Bit of each peer that acknowledged any state of it.
+    std::uint16_t
+        coarse_by{};  ///< Bit of each peer to which it went in voxels of 0.4 m, unless that was lost.
     std::optional<Time> waits_since{};  ///< Since then some peer lacks its present state.
     Time changed{};
 
     bool is_sent() const { return sent_change != 0 && sent_known == known && sent_occupied == occupied; }
+    /// Whether the state that was sent last neither arrived at these peers nor was lost.
+    bool is_on_its_way(std::uint16_t to) const { return (up_to_date & ~had_by & to) != 0; }
+    /// Whether these peers can be sent what changed.
+    bool has_base(std::uint16_t to) const { return (to & ~base_by) == 0 && (base_known & ~known) == 0; }
+    void acknowledge(std::uint16_t by);
+    void forget(std::uint16_t peer);
   };
   /// What one peer lacks, by number of the change.
   struct Peer {
@@ -156,12 +171,21 @@ class BlockSource final : public transfer::Source {
     std::size_t focus_next{};          ///< The slice of the focus that was looked at last.
     std::optional<Time>
         focus_rests_until{};  ///< It lacked nothing of the focus when that was looked at last.
+    std::uint64_t coarse_below{
+        UINT64_MAX};      ///< Those of `unseen` with earlier changes go next as coarse ones.
+    bool coarse_found{};  ///< Any of them had to go, since all of them were begun last.
+    bool coarse_done{};
 
     void forget(std::uint64_t change) { unseen.erase(change), changed.erase(change); }
   };
   struct Part {
     Cell cell{};
     std::uint64_t change{};
+  };
+  /// A piece on its way.
+  struct Flight {
+    std::vector<Part> parts{};
+    bool coarse{};
   };
   SubmapPlace place_of(std::uint32_t submap) const;
   Cell cell_of(const Ref& ref) const;
@@ -171,11 +195,18 @@ class BlockSource final : public transfer::Source {
   BlockVotes votes_of(const Cell& cell, const Place& place, std::optional<std::uint32_t> without = {}) const;
   /// Notes that a peer lacks the present state of a place.
   void add_missing(Peer& peer, const Cell& cell, Place& place);
+  /// Notes that the present state of a place went to these peers.
+  void note_sent(const Cell& cell, Place& place, std::uint16_t to);
+  /// Takes the length of a piece into the mean lengths of blocks.
+  void learn(const std::vector<Cell>& sent, std::uint16_t to, std::size_t bytes);
   enum class Due { no, yes, late };
-  Due due(const Cell& cell, Duration rest, Duration flush, Duration latest, Time now) const;
+  Due due(const Peer& peer, const Cell& cell, Duration rest, Duration flush, Duration latest, Time now) const;
   struct Choice;
+  /// Whether a peer is to have voxels of 0.4 m of all that it lacks before any of 0.2 m.
+  bool is_coarse_first(const Peer& peer, std::size_t max_bytes) const;
   /// Cells for a piece, all of one group. Defined in block_choice.cpp, as all that it calls.
   std::vector<Cell> choose(Peer& peer, std::size_t max_bytes, Time now);
+  std::vector<Cell> choose_coarse(Peer& peer);
   void add_focused(Peer& peer, Time now, Choice& out);
   /// Adds what a peer lacks of a region at one x; returns how many cells were looked at.
   std::size_t add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Choice& out) const;
@@ -198,10 +229,11 @@ class BlockSource final : public transfer::Source {
   std::map<Cell, Place> cells_{};
   std::map<std::uint32_t, std::size_t> pruned_{};
   std::map<transfer::PeerId, Peer> peers_{};
-  std::map<std::uint64_t, std::vector<Part>> flights_{};
+  std::map<std::uint64_t, Flight> flights_{};
   std::vector<BlockRegion> focus_{};
   Time now_{};
-  double block_bytes_{3.0};  ///< Of a block in a piece, in the mean.
+  /// Of a block in a piece, in the mean: as a whole, and what changed.
+  double whole_bytes_{4.0}, change_bytes_{2.0};
   std::uint64_t changes_{};
   std::uint64_t tokens_{};
   std::uint64_t dropped_{};

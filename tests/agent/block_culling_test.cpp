@@ -47,9 +47,12 @@ class BlockCulling : public testing::Test {
       if (peers.empty()) continue;
       const auto content = source.next(peers, 1200, now);
       if (!content) continue;
-      const auto piece = perception::decode(content->data);
-      ASSERT_TRUE(piece.ok());
       for (const PeerId& peer : peers) {
+        const auto piece = perception::decode(content->data, [&](const auto& key, const BlockIndex& index) {
+          const auto known = stations[peer][key.index].find(index);
+          return known != stations[peer][key.index].end() ? std::optional(known->second.block) : std::nullopt;
+        });
+        ASSERT_TRUE(piece.ok()) << piece.error().text;
         if (random.chance(0.2)) {
           source.lost(peer, content->token);
           continue;

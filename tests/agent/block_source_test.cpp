@@ -25,9 +25,11 @@ class BlockSourceTest : public testing::Test {
     if (!content) return {};
     EXPECT_LE(content->data.size(), bytes);
     taken = content->token;
-    const auto piece = perception::decode(content->data);
-    EXPECT_TRUE(piece.ok());
-    return piece ? *piece : perception::MapPiece{};
+    const auto piece = perception::decode(content->data, find_stored);
+    EXPECT_TRUE(piece.ok()) << piece.error().text;
+    if (!piece) return {};
+    for (const auto& update : piece->blocks) stored[{piece->key, update.block.index}] = update.block;
+    return *piece;
   }
   void put(int x, std::uint64_t known = kAll, std::uint32_t submap = 0) {
     source.update(submap, {{x, 0, 0}, known, known & 1});
@@ -36,6 +38,13 @@ class BlockSourceTest : public testing::Test {
   BlockSource source{{.robot = "r1", .start = 5, .max_blocks = 1000}};
   Time now{100s};
   std::uint64_t token{};
+  /// What a station that gets all pieces has.
+  std::map<std::pair<perception::SubmapKey, BlockIndex>, CoarseBlock> stored{};
+  perception::FindStored find_stored = [this](const perception::SubmapKey& key,
+                                              const BlockIndex& index) -> std::optional<CoarseBlock> {
+    const auto found = stored.find({key, index});
+    return found != stored.end() ? std::optional(found->second) : std::nullopt;
+  };
 };
 
 TEST_F(BlockSourceTest, SendsTheNewestFirstAndNothingTwice) {
@@ -106,6 +115,8 @@ TEST_F(BlockSourceTest, APieceIsFilledByCodedSizeAndItsBlocksShareOneRevision) {
   const auto piece = next({kOne}, token, 500);
   EXPECT_GT(piece.blocks.size(), 200U);
   for (const auto& update : piece.blocks) EXPECT_EQ(update.revision, piece.blocks.front().revision);
+  source.acknowledged(kOne, token);
+  source.settled(token);
   // A block that changes now is newer than all of them, wherever it was among them.
   const int x = piece.blocks.front().block.index.x;
   put(x, 1);
@@ -154,7 +165,7 @@ TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrSomeSeconds) {
   now += 1s;
   source.tick(now);
   put(0, 1 | 1ULL << 63U);  // A voxel of 0.4 m that the station does not know.
-  for (int i = 0; i < 59; ++i) {
+  for (int i = 0; i < 65; ++i) {
     EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << i;
     now += 100ms;
   }
@@ -164,7 +175,7 @@ TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrSomeSeconds) {
   source.tick(now);
   Random random(1);
   for (int x = 1; x < 300; ++x) source.update(0, {{x, 0, 0}, kAll, random.next()});
-  now += 1600ms;
+  now += 2100ms;
   EXPECT_GT(next({kOne}, token).blocks.size(), 50U) << "they fill one";
 }
 
@@ -259,6 +270,141 @@ TEST(PoseSource, SendsEachPoseUntilItArrives) {
   ASSERT_EQ(has.size(), 50U);
   EXPECT_NEAR(has.at(49).position.x(), 49.0, 0.01);
   EXPECT_NEAR(has.at(49).yaw(), 0.5, 0.001);
+}
+
+class BlockChangesTest : public BlockSourceTest {
+ protected:
+  BlockChangesTest() {
+    source.join(kOne);
+    for (int x = 0; x < 40; ++x) put(x, 0x00ff'00ff);
+    std::uint64_t sent = 0;
+    EXPECT_EQ(arrives(sent).size(), 40U);
+    for (int x = 0; x < 40; ++x) put(x, 0x0fff'00ff);
+    now += 60s;
+  }
+  /// The next piece, which is acknowledged.
+  std::vector<perception::BlockUpdate> arrives(std::uint64_t& sent) {
+    now += 60s;
+    auto out = next({kOne}, sent).blocks;
+    source.acknowledged(kOne, sent);
+    source.settled(sent);
+    return out;
+  }
+  /// Whether the next piece, which goes to these, has changes only; it is not taken.
+  bool is_change(const std::vector<PeerId>& peers) {
+    const auto content = source.next(peers, 1200, now);
+    EXPECT_TRUE(content);
+    if (!content) return false;
+    token = content->token;
+    const auto piece = perception::decode(content->data, find_stored);
+    EXPECT_TRUE(piece.ok());
+    if (piece) last = *piece;
+    return !perception::decode(content->data).ok();
+  }
+  void arrive() {
+    for (const auto& update : last.blocks) stored[{last.key, update.block.index}] = update.block;
+    source.acknowledged(kOne, token);
+    source.settled(token);
+  }
+  void lose(const PeerId& peer) {
+    source.lost(peer, token);
+    source.settled(token);
+  }
+
+  perception::MapPiece last{};
+};
+
+TEST_F(BlockChangesTest, OfAStateThatArrivedOnlyChangesGoOut) { EXPECT_TRUE(is_change({kOne})); }
+
+TEST_F(BlockChangesTest, AChangeGoesOnceMoreAndThenAsAWhole) {
+  EXPECT_TRUE(is_change({kOne}));
+  lose(kOne);
+  EXPECT_TRUE(is_change({kOne}));
+  lose(kOne);
+  EXPECT_FALSE(is_change({kOne}));
+  arrive();
+  put(3, 0xffff'00ff);
+  now += 300s;
+  EXPECT_TRUE(is_change({kOne}));
+}
+
+TEST_F(BlockChangesTest, TheNextChangeWaitsForTheOneOnItsWay) {
+  EXPECT_TRUE(is_change({kOne}));
+  for (int x = 0; x < 40; ++x) put(x, 0xffff'00ff);
+  now += 300s;
+  EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now));
+  EXPECT_EQ(source.missing(kOne), 40U);
+  arrive();
+  now += 1s;
+  EXPECT_TRUE(is_change({kOne}));
+}
+
+TEST_F(BlockChangesTest, AStationThatHasNothingGetsWholeBlocks) {
+  source.join(kTwo);
+  EXPECT_FALSE(is_change({kTwo, kOne}));
+}
+
+class CoarseFirstTest : public BlockSourceTest {
+ protected:
+  static constexpr int kBlocks = 25'000;
+  CoarseFirstTest() {
+    for (int x = 0; x < kBlocks; ++x) many.update(0, {{x % 100, x / 100, 0}, kAll, 0x1111'1111'1111'1111});
+    many.join(kOne);
+  }
+  std::optional<perception::MapPiece> piece() {
+    const auto content = many.next(std::vector{kOne}, 1000, now);
+    if (!content) return std::nullopt;
+    token = content->token;
+    const auto decoded = perception::decode(content->data);
+    EXPECT_TRUE(decoded.ok());
+    return decoded ? std::optional(*decoded) : std::nullopt;
+  }
+  void settle(bool arrived) {
+    if (arrived)
+      many.acknowledged(kOne, token);
+    else
+      many.lost(kOne, token);
+    many.settled(token);
+  }
+
+  BlockSource many{{.robot = "r1", .start = 5, .max_blocks = kBlocks}};
+};
+
+TEST_F(CoarseFirstTest, AStationThatLacksMuchGetsLargeVoxelsOfAllFirst) {
+  std::map<BlockIndex, int> coarse;
+  std::set<BlockIndex> fine;
+  for (int pieces = 0; many.missing(kOne) > 0 && pieces < 1000; ++pieces, now += 10s) {
+    const auto got = piece();
+    if (!got) continue;
+    const bool arrived = pieces % 5 != 0;
+    settle(arrived);
+    for (const auto& update : got->blocks) {
+      if (got->level == 1) {
+        EXPECT_TRUE(fine.empty());
+        if (arrived) ++coarse[update.block.index];
+      } else if (arrived) {
+        EXPECT_TRUE(fine.insert(update.block.index).second);
+      }
+    }
+  }
+  EXPECT_EQ(coarse.size(), static_cast<std::size_t>(kBlocks));
+  for (const auto& [index, times] : coarse) EXPECT_EQ(times, 1);
+  EXPECT_EQ(fine.size(), static_cast<std::size_t>(kBlocks));
+  EXPECT_TRUE(many.complete(kOne, 0));
+}
+
+TEST_F(CoarseFirstTest, WhatIsKnownInSmallVoxelsNeverComesInLargeOnes) {
+  for (; many.missing(kOne) > 0; now += 10s)
+    if (piece()) settle(true);
+  ASSERT_TRUE(many.complete(kOne, 0));
+  for (int x = 0; x < kBlocks; ++x) many.update(1, {{x % 100, x / 100, 0}, kAll, 0x3333});
+  now += 600s;
+  for (int pieces = 0; pieces < 5; ++pieces) {
+    const auto got = piece();
+    ASSERT_TRUE(got);
+    EXPECT_EQ(got->level, 2);
+    settle(true);
+  }
 }
 
 }  // namespace

@@ -96,7 +96,12 @@ struct MapBench {
       }
       return;
     }
-    const auto decoded = perception::decode(piece.data);
+    const auto decoded = perception::decode(
+        piece.data, [&](const auto& key, const auto& index) -> std::optional<perception::CoarseBlock> {
+          const auto known = station.blocks[key].find(index);
+          return known != station.blocks[key].end() ? std::optional(known->second.block) : std::nullopt;
+        });
+    ASSERT_TRUE(decoded.ok()) << decoded.error().text;
     for (const auto& update : decoded.value().blocks) {
       ++station.received;
       auto& known = station.blocks[decoded->key][update.block.index];

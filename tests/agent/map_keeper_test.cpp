@@ -99,7 +99,11 @@ TEST_F(MapKeeperTest, SendsBlocksAndPosesToAStationAndPosesAgainAfterACorrection
   transfer::Sender sender({.session = 7});
   for (transfer::Source* source : keeper.sources()) sender.add(*source);
   std::map<std::uint32_t, Pose3> poses;
-  std::set<perception::BlockIndex> blocks;
+  std::map<perception::BlockIndex, perception::CoarseBlock> blocks;
+  const auto find_stored = [&](const perception::SubmapKey&, const perception::BlockIndex& index) {
+    const auto found = blocks.find(index);
+    return found != blocks.end() ? std::optional(found->second) : std::nullopt;
+  };
   const auto exchange = [&](Duration span) {
     for (const Time end = strand->now() + span; strand->now() < end; run(50ms)) {
       keeper.follow(frame);
@@ -109,8 +113,8 @@ TEST_F(MapKeeperTest, SendsBlocksAndPosesToAStationAndPosesAgainAfterACorrection
           const auto decoded = perception::decode_poses(piece.data);
           for (const auto& pose : decoded.value().poses) poses[pose.key.index] = pose.T_map_submap;
         } else {
-          const auto decoded = perception::decode(piece.data);
-          for (const auto& update : decoded.value().blocks) blocks.insert(update.block.index);
+          const auto decoded = perception::decode(piece.data, find_stored);
+          for (const auto& update : decoded.value().blocks) blocks[update.block.index] = update.block;
         }
       }
       if (const auto due = receiver.due(strand->now(), 20e6)) {

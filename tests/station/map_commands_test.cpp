@@ -88,8 +88,8 @@ TEST_F(MapCommandsTest, ShowsARobotThatItIsThereWithoutAnyPiece) {
   const std::size_t before = robot_->piece_acks().size();
   EXPECT_GE(before, 1U);
   run_for(20s);
-  EXPECT_GE(robot_->piece_acks().size(), before + 4);
-  EXPECT_LE(robot_->piece_acks().size(), before + 6);
+  EXPECT_GE(robot_->piece_acks().size(), before + 8);
+  EXPECT_LE(robot_->piece_acks().size(), before + 13);
 }
 
 TEST_F(MapCommandsTest, EveryKindOfFileIsWritten) {

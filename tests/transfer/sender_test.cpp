@@ -52,7 +52,7 @@ class TransferTest : public testing::Test {
         if (const auto due = stations[s].receiver.due(now, profile.bandwidth)) {
           Ack ack{stations[s].id, stations[s].start, {}};
           for (const auto& [robot, receipt] : *due) ack.receipt = receipt;
-          send([this, ack] { sender.acknowledged(ack, now); });
+          if (!random.chance(ack_loss)) send([this, ack] { sender.acknowledged(ack, now); });
         }
       std::vector<std::pair<Time, std::function<void()>>> arriving;
       std::erase_if(air, [&](auto& message) {
@@ -78,7 +78,7 @@ class TransferTest : public testing::Test {
 
   wire::LinkProfile profile{.name = "mesh_500k", .bandwidth = 500e3};
   wire::SenderState link{.link = &profile};
-  double loss{}, repeated{}, jitter{};
+  double loss{}, ack_loss{}, repeated{}, jitter{};
   Random random{3};
   Time now{10s};
   ToySource source{};
@@ -199,6 +199,19 @@ TEST_F(TransferTest, APieceSaysWhatWaitsOfAllSources) {
   for (; sent.empty(); now += 50ms) sent = sender.due(now, link);
   const std::size_t inside = sent.front().data.size() / ToySource::kPart;
   EXPECT_EQ(sent.front().waiting, 200 - inside + 7);
+}
+
+TEST_F(TransferTest, AnAcknowledgementThatIsLostMakesNothingGoTwice) {
+  profile.bandwidth = 100e3;
+  ack_loss = 0.3;
+  for (std::uint8_t i = 0; i < 100; ++i) {
+    source.set(i, 2);
+    run(600ms, 1);
+  }
+  run(10s, 1);
+  EXPECT_TRUE(complete(0));
+  EXPECT_GT(pieces, 50U);
+  EXPECT_EQ(source.losses, 0);
 }
 
 TEST_F(TransferTest, AfterACutItGoesOnAtTheRateFromBefore) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 
 #include "core/checksum/crc32c.hpp"
@@ -110,6 +111,41 @@ TEST(Piece, PacksAsManyBlocksAsFit) {
   EXPECT_EQ(pack(kKey, {}, 1200).count, 0u);
 }
 
+TEST(Piece, OfLargerVoxelsShowsEachPartAsTheWhole) {
+  const CoarseBlock one{{1, 2, 3}, 0x21, 0x20}, other{{1, 2, 4}, 1ULL << 63, 0};
+  const auto piece = decode(encode(MapPiece{kKey, {{one, 4}, {other, 4}}, 1}));
+  ASSERT_TRUE(piece);
+  EXPECT_EQ(piece->level, 1);
+  const CoarseBlock whole{{1, 2, 3}, 0x0033'0033ULL, 0x0033'0033ULL},
+      corner{{1, 2, 4}, 0xcc00'cc00ULL << 32, 0};
+  EXPECT_EQ(piece->blocks, (std::vector<BlockUpdate>{{whole, 4}, {corner, 4}}));
+  const auto blocks = corridor(200);
+  EXPECT_LT(encode(MapPiece{kKey, blocks, 1}).size(), encode(MapPiece{kKey, blocks}).size() * 3 / 4);
+}
+
+TEST(Piece, OfChangesNeedsWhatItChanges) {
+  auto blocks = corridor(100);
+  std::map<std::pair<SubmapKey, BlockIndex>, CoarseBlock> stored;
+  for (BlockUpdate& update : blocks) {
+    stored[{kKey, update.block.index}] = update.block;
+    update.block.known |= 0xff00, update.block.occupied ^= update.block.known & 4;
+  }
+  const FindStored find_stored = [&](const SubmapKey& key, const BlockIndex& index) {
+    const auto found = stored.find({key, index});
+    return found != stored.end() ? std::optional(found->second) : std::nullopt;
+  };
+  const auto find_base = [&](const BlockIndex& index) { return find_stored(kKey, index); };
+  const auto packed = pack(kKey, blocks, kMaxPieceBytes, 2, find_base);
+  ASSERT_EQ(packed.count, blocks.size());
+  EXPECT_LT(packed.bytes.size(), encode(MapPiece{kKey, blocks}).size());
+  const auto piece = decode(packed.bytes, find_stored);
+  ASSERT_TRUE(piece) << piece.error().text;
+  EXPECT_EQ(piece->blocks, sorted(blocks));
+  EXPECT_EQ(decode(packed.bytes).reason(), Reason::out_of_range);
+  stored.begin()->second.occupied ^= 1;
+  EXPECT_EQ(decode(packed.bytes, find_stored).reason(), Reason::out_of_range);
+}
+
 TEST(Piece, ACorridorTakesFewBytesABlock) {
   auto blocks = corridor(200);
   for (BlockUpdate& update : blocks) update.revision = 500;
@@ -148,19 +184,19 @@ std::vector<std::uint8_t> piece_of(std::uint8_t version, std::uint8_t kind,
 TEST(Piece, IsRefusedWhenItsContentIsHostile) {
   const std::vector<std::uint8_t> whole = encode(MapPiece{kKey, corridor(20)});
   const std::vector<std::uint8_t> content(whole.begin() + 6, whole.end());
-  ASSERT_TRUE(decode(piece_of(3, whole[1], content)));
+  ASSERT_TRUE(decode(piece_of(4, whole[1], content)));
   EXPECT_EQ(decode(encode(SubmapPoses{})).reason(), Reason::malformed);
-  EXPECT_EQ(decode(piece_of(3, whole[1], std::vector<std::uint8_t>(1 << 20))).reason(), Reason::malformed);
+  EXPECT_EQ(decode(piece_of(4, whole[1], std::vector<std::uint8_t>(1 << 20))).reason(), Reason::malformed);
   EXPECT_EQ(decode(encode(MapPiece{{"", 1, 2}, {}})).reason(), Reason::malformed);
 }
 
 TEST(Piece, OfAnotherVersionOrOtherTablesIsRefusedByName) {
   const std::vector<std::uint8_t> whole = encode(MapPiece{kKey, corridor(20)});
   const std::vector<std::uint8_t> content(whole.begin() + 6, whole.end());
-  for (const int version : {0, 1, 2, 255})
+  for (const int version : {0, 1, 2, 3, 255})
     EXPECT_EQ(decode(piece_of(static_cast<std::uint8_t>(version), whole[1], content)).reason(),
               Reason::wrong_protocol);
-  EXPECT_EQ(decode(piece_of(3, static_cast<std::uint8_t>(whole[1] + 0x10), content)).reason(),
+  EXPECT_EQ(decode(piece_of(4, static_cast<std::uint8_t>(whole[1] + 0x10), content)).reason(),
             Reason::wrong_protocol);
 }
 
@@ -175,12 +211,12 @@ TEST(Piece, RandomContentDoesNoHarm) {
     content[1] = 'r';
     // Small numbers at the beginning lead farther.
     if (n % 2 == 0 && content.size() > 14) content[10] = static_cast<std::uint8_t>(random() % 8);
-    if (const auto piece = decode(piece_of(3, kind, content))) {
+    if (const auto piece = decode(piece_of(4, kind, content))) {
       ++decoded;
       ASSERT_LE(piece->blocks.size(), kMaxPieceBlocks);
       for (const BlockUpdate& u : piece->blocks) ASSERT_EQ(u.block.occupied & ~u.block.known, 0u);
     }
-    if (const auto poses = decode_poses(piece_of(3, 2, content))) {
+    if (const auto poses = decode_poses(piece_of(4, 2, content))) {
       for (const SubmapPose& p : poses->poses) ASSERT_TRUE(p.T_map_submap.position.allFinite());
     }
   }
