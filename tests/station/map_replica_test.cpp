@@ -115,7 +115,7 @@ TEST_F(MapReplicaTest, ADamagedFileMakesTheStartANewOneAndKeepsWhatCanBeRead) {
 }
 
 TEST_F(MapReplicaTest, ALongFileOfOldStatesIsWrittenAgain) {
-  for (int n = 0; n < 1500; ++n) {
+  for (int n = 0; n < 500; ++n) {
     send_blocks(0, 60);
     if (n % 20 == 0) run(200ms);
   }
