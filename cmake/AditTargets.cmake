@@ -110,8 +110,13 @@ function(adit_test name)
   if(arg_SERIAL)
     set(serial RUN_SERIAL TRUE)
   endif()
+  # Rehearsals take up to a minute each: ctest starts them first, so that none is left to run alone at the end.
+  set(cost "")
+  if("rehearsal" IN_LIST arg_LABELS)
+    set(cost COST 20)
+  endif()
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST
-    PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} ${serial})
+    PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} ${serial} ${cost})
 endfunction()
 
 # adit_bench(NAME SOURCES ... LINK dep ...): a Google Benchmark program bench_NAME.

@@ -1,11 +1,14 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Gives made-up bytes of a station to the client's readers, and made-up pieces of a map to their decoder, with libFuzzer
-# and the sanitizers. usage: tools/fuzz.sh [SECONDS]   (of each, default 300). What it finds is in build/fuzz/found, its inputs in build/fuzz/corpus. Exit
-# status 77: Clang with libFuzzer is not installed.
+# Gives made-up bytes of a station to the client's readers, and made-up pieces of maps and findings to their decoders,
+# with libFuzzer and the sanitizers. usage: tools/fuzz.sh [SECONDS [PROGRAM...]]   (of each, default 300; programs:
+# fuzz_client, fuzz_piece, fuzz_finding_piece, default all). What it finds is in build/fuzz/found, its inputs are in
+# build/fuzz/corpus*. Exit status 77: Clang with libFuzzer is not installed.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
 seconds="${1:-300}"
+programs=("${@:2}")
+[ ${#programs[@]} -gt 0 ] || programs=(fuzz_client fuzz_piece fuzz_finding_piece)
 build=build/fuzz
 probe="$(mktemp -d)"
 trap 'rm -rf "$probe"' EXIT
@@ -18,17 +21,23 @@ mkdir -p "$build/corpus" "$build/found"
 cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
   -DADIT_SANITIZE=address,undefined,fuzzer-no-link -DADIT_WERROR=OFF -DADIT_BENCH=OFF -DADIT_FUZZ=ON > "$build/configure.log" 2>&1 ||
   { tail -20 "$build/configure.log" >&2; exit 1; }
-nice -n 5 cmake --build "$build" -j "${ADIT_JOBS:-$(nproc)}" --target fuzz_client fuzz_piece > "$build/build.log" 2>&1 ||
+nice -n 5 cmake --build "$build" -j "${ADIT_JOBS:-$(nproc)}" --target "${programs[@]}" > "$build/build.log" 2>&1 ||
   { tail -30 "$build/build.log" >&2; exit 1; }
-ADIT_FUZZ_SEEDS="$build/corpus" "$build/bin/fuzz_client" -runs=0 > /dev/null 2>&1
 status=0
 fuzz() {  # PROGRAM CORPUS LENGTH
   echo "fuzz: $1"
+  mkdir -p "$2"
   nice -n 5 "$build/bin/$1" -max_total_time="$seconds" -max_len="$3" -timeout=10 -rss_limit_mb=2048 \
     -print_final_stats=1 -artifact_prefix="$build/found/" "$2" > "$build/run.log" 2>&1 || status=1
   tail -12 "$build/run.log"
 }
-mkdir -p "$build/corpus_pieces"
-fuzz fuzz_client "$build/corpus" 60000
-fuzz fuzz_piece "$build/corpus_pieces" 1300
+for program in "${programs[@]}"; do
+  case "$program" in
+    fuzz_client)
+      ADIT_FUZZ_SEEDS="$build/corpus" "$build/bin/fuzz_client" -runs=0 > /dev/null 2>&1
+      fuzz fuzz_client "$build/corpus" 60000 ;;
+    fuzz_piece) fuzz fuzz_piece "$build/corpus_pieces" 1300 ;;
+    fuzz_finding_piece) fuzz fuzz_finding_piece "$build/corpus_finding_pieces" 1300 ;;
+  esac
+done
 exit $status

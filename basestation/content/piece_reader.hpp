@@ -12,7 +12,8 @@
 namespace adit::station {
 
 /// Takes the pieces of content of all robots as they come by radio, genuine or not, and hands each to the
-/// taker of its kind. A piece is acknowledged once its taker says that its content is stored.
+/// taker of its kind. A piece is acknowledged once its taker says that its content is stored. While 64 robots
+/// are heard, pieces of further ones are not acknowledged.
 class PieceReader {
  public:
   struct Piece {
@@ -46,12 +47,18 @@ class PieceReader {
 
  private:
   static constexpr std::size_t kMaxRobots = 64;
+  static constexpr Duration kSilent{30s};  ///< A robot that was silent for longer makes room for another one.
+  struct Sender {
+    std::uint32_t session{};  ///< The last one that was heard.
+    Time heard{};
+  };
+  void hear(const std::string& robot, std::uint32_t session);
 
   std::function<Time()> now_;
   std::map<std::uint8_t, Taker> takers_{};
   Taker otherwise_{};
   transfer::Receiver receiver_{};
-  std::map<std::string, std::uint32_t> sessions_{};  ///< The last one that was heard of each robot.
+  std::map<std::string, Sender> senders_{};
   std::map<std::uint8_t, std::uint64_t> refused_{};
 };
 

@@ -13,12 +13,17 @@
 namespace adit::station {
 namespace {
 
-// A header: kind and version, start, CRC-32C of both. Then batches: u32 length, CRC-32C of the content,
-// content.
+// A header: kind and version, start (0: it has ended), CRC-32C of both. Then batches: u32 length, CRC-32C of
+// the length, CRC-32C of the content, content. The content is pieces. One without a robot's name is a mark:
+// the start has ended; its data is the name of a robot of which nothing that comes before it counts, or
+// empty.
 constexpr std::array<std::uint8_t, 4> kKind{'A', 'M', 'P', 1};
 constexpr std::size_t kHeaderBytes = 12, kBatchHeader = 12;
 constexpr std::size_t kMaxName = 64;
 constexpr std::size_t kLongest = std::size_t{48} << 20;  // Files that are longer are not read.
+
+JournalPiece mark(const std::string& forgotten) { return {.data = {forgotten.begin(), forgotten.end()}}; }
+bool is_mark(const JournalPiece& piece) { return piece.robot.empty(); }
 
 store::Bytes header(std::uint32_t start) {
   store::Packer out;
@@ -40,6 +45,14 @@ void add_batch(store::Bytes& out, std::span<const std::uint8_t> content) {
   head.put(crc32c(head.bytes())).put(crc32c(content));
   out.insert(out.end(), head.bytes().begin(), head.bytes().end());
   out.insert(out.end(), content.begin(), content.end());
+}
+
+store::Bytes whole_file(std::uint32_t start, const std::vector<JournalPiece>& pieces) {
+  store::Bytes out = header(start);
+  store::Packer content;
+  for (const JournalPiece& piece : pieces) add_piece(content, piece);
+  if (!pieces.empty()) add_batch(out, content.bytes());
+  return out;
 }
 
 enum class Read { good, damaged, unfinished };
@@ -70,27 +83,60 @@ Read take_batch(std::span<const std::uint8_t>& left, std::vector<JournalPiece>& 
   return Read::good;
 }
 
+/// Removes the marks, and what they make void.
+void apply_marks(LoadedJournal& journal) {
+  std::vector<JournalPiece> pieces;
+  for (JournalPiece& piece : journal.pieces) {
+    if (!is_mark(piece)) {
+      pieces.push_back(std::move(piece));
+      continue;
+    }
+    journal.start = 0;
+    const std::string forgotten(piece.data.begin(), piece.data.end());
+    if (!forgotten.empty())
+      std::erase_if(pieces, [&](const JournalPiece& before) { return before.robot == forgotten; });
+  }
+  journal.pieces = std::move(pieces);
+}
+
 }  // namespace
 
-/// One write, or the removal of the file.
+/// One access to the disk.
 struct MapJournal::Batch {
+  enum class Kind { append, replace, remove };
+
+  Kind kind{Kind::append};
   std::vector<Waiting> pieces{};
-  store::Bytes bytes{};  ///< Empty: remove the file.
+  store::Bytes bytes{};
+  std::function<store::Bytes()> pack{};  ///< Of `replace`: makes `bytes`.
+  std::size_t max_bytes{};               ///< Of `replace`.
   bool ran{false};
   Result<void> result{};
 
   void run(store::Disk& disk) {
-    result = bytes.empty() ? disk.remove(kFile) : disk.append(kFile, bytes);
+    if (kind == Kind::append) {
+      result = disk.append(kFile, bytes);
+    } else if (kind == Kind::remove) {
+      result = disk.remove(kFile);
+    } else {
+      bytes = std::exchange(pack, nullptr)();
+      if (bytes.size() > max_bytes)
+        result = {Reason::cannot_write, "it takes " + std::to_string(bytes.size() >> 10) + " KiB"};
+      else
+        result = disk.replace(kFile, bytes);
+    }
     ran = true;
   }
 };
 
 MapJournal::MapJournal(MapJournalParams params, std::shared_ptr<store::Disk> disk, Executor& home,
-                       std::function<void(const std::string& text)> trouble)
+                       std::function<void(const std::string& text)> trouble,
+                       std::function<PackMap()> copy_map)
     : params_(params),
       disk_(std::move(disk)),
       home_(home),
       trouble_(std::move(trouble)),
+      copy_map_(std::move(copy_map)),
       self_(std::make_shared<MapJournal*>(this)) {}
 
 MapJournal::~MapJournal() { *self_ = nullptr; }
@@ -117,8 +163,10 @@ LoadedJournal MapJournal::load() {
     if (batch != Read::damaged) {
       out.start = start;
       out.unfinished = batch == Read::unfinished;
+      apply_marks(out);
       return out;
     }
+    apply_marks(out);
   }
   const std::string aside = copy_aside();
   out.lost = std::string("the map on the disk is damaged, and robots send it again") +
@@ -131,13 +179,12 @@ std::string MapJournal::copy_aside() {
 }
 
 void MapJournal::begin(std::uint32_t start, const std::vector<JournalPiece>& pieces) {
+  start_ = start;
+  ended_ = Ended::no;
   if (!disk_) return;
   waiting_.clear();
   waiting_bytes_ = 0;
-  begin_ = header(start);
-  store::Packer content;
-  for (const JournalPiece& piece : pieces) add_piece(content, piece);
-  if (!pieces.empty()) add_batch(*begin_, content.bytes());
+  begin_ = whole_file(start, pieces);
   if (!writing_) replace();
 }
 
@@ -149,8 +196,11 @@ void MapJournal::replace() {
     return;
   else
     useless_ = written.error().text;
-  // The old file must go, also if no piece comes.
-  timer_ = home_.after(params_.period, [this] { write(); });
+  schedule(params_.period);  // The old file must go, also if no piece comes.
+}
+
+void MapJournal::schedule(Duration delay) {
+  timer_ = home_.after(delay, [this] { write(); });
 }
 
 void MapJournal::add(JournalPiece piece, std::function<void()> kept) {
@@ -158,7 +208,22 @@ void MapJournal::add(JournalPiece piece, std::function<void()> kept) {
   if (waiting_bytes_ + piece.data.size() > params_.max_waiting) return;
   waiting_bytes_ += piece.data.size();
   waiting_.push_back({std::move(piece), std::move(kept)});
-  if (!writing_ && !timer_.active()) timer_ = home_.after(params_.period, [this] { write(); });
+  if (!writing_ && !timer_.active()) schedule(params_.period);
+}
+
+void MapJournal::end_start(std::function<void()> kept) {
+  if (!disk_ || ended_ == Ended::written) return kept();
+  if (ended_ == Ended::waiting) return;
+  ended_ = Ended::waiting;
+  waiting_.push_back({mark(""), std::move(kept)});
+  if (!writing_ && !timer_.active()) schedule(params_.period);
+}
+
+void MapJournal::forget(const std::string& robot) {
+  if (!disk_) return;
+  if (ended_ == Ended::no) ended_ = Ended::waiting;
+  waiting_.push_back({mark(robot), [] {}});
+  if (!writing_ && !timer_.active()) schedule(params_.period);
 }
 
 void MapJournal::write() {
@@ -169,17 +234,33 @@ void MapJournal::write() {
     for (const Waiting& waiting : waiting_) add_piece(content, waiting.piece);
     add_batch(batch->bytes, content.bytes());
     if (bytes_ + batch->bytes.size() > params_.max_bytes) {
+      // Of a file that was written again there is nothing to gain.
+      if (copy_map_ && bytes_ > params_.max_bytes / 2) return write_again();
       useless_ = "it would take more than " + std::to_string(params_.max_bytes >> 20) + " MiB";
-      batch->bytes.clear();
     }
+  }
+  if (!useless_.empty()) {
+    batch->kind = Batch::Kind::remove;
+    batch->bytes.clear();
   }
   batch->pieces = std::exchange(waiting_, {});
   waiting_bytes_ = 0;
-  writing_ = true;
+  start(batch);
+}
+
+/// Pieces that wait are in the copy of the map, too; they are kept once they are written behind it.
+void MapJournal::write_again() {
+  auto batch = std::make_shared<Batch>();
+  batch->kind = Batch::Kind::replace;
+  batch->max_bytes = params_.max_bytes / 2;
+  batch->pack = [start = ended_ == Ended::written ? 0 : start_, pack = copy_map_()] {
+    return whole_file(start, pack());
+  };
   start(batch);
 }
 
 void MapJournal::start(const std::shared_ptr<Batch>& batch) {
+  writing_ = true;
   const auto back = [self = self_, batch] {
     if (*self) (*self)->written(*batch);
   };
@@ -196,7 +277,7 @@ void MapJournal::start(const std::shared_ptr<Batch>& batch) {
 
 void MapJournal::written(const Batch& batch) {
   writing_ = false;
-  const bool removal = batch.bytes.empty(), done = batch.ran && batch.result;
+  const bool removal = batch.kind == Batch::Kind::remove, done = batch.ran && batch.result;
   if (begin_) {
     replace();  // Meanwhile all of it was forgotten.
   } else if (done && removal) {
@@ -206,7 +287,9 @@ void MapJournal::written(const Batch& batch) {
     keep(std::exchange(waiting_, {}));
     return;
   } else if (done) {
-    bytes_ += batch.bytes.size();
+    bytes_ = batch.bytes.size() + (batch.kind == Batch::Kind::append ? bytes_ : 0);
+    for (const Waiting& waiting : batch.pieces)
+      if (is_mark(waiting.piece)) ended_ = Ended::written;
     keep(batch.pieces);
   } else if (!batch.ran) {
     for (const Waiting& waiting : batch.pieces) waiting_bytes_ += waiting.piece.data.size();
@@ -219,7 +302,7 @@ void MapJournal::written(const Batch& batch) {
     stuck_ = stuck_ || removal;
   }
   if (waiting_.empty() && useless_.empty()) return;
-  timer_ = home_.after(removal ? params_.retry : params_.period, [this] { write(); });
+  schedule(removal ? params_.retry : params_.period);
 }
 
 void MapJournal::keep(const std::vector<Waiting>& pieces) {

@@ -33,21 +33,26 @@ struct LoadedJournal {
   std::vector<JournalPiece> pieces{};  ///< In the order of their arrival.
   std::size_t bytes{};                 ///< Of the file.
   bool unfinished{false};              ///< The last write was cut off before anything of it was acknowledged.
-  std::string lost{};                  ///< Why it is not complete; empty: it is, or there was none.
+  std::string lost{};                  ///< What is damaged; empty: nothing.
 };
 
 /// The pieces of robots' maps that this station acknowledged, on its disk: after a restart it has them, and
 /// continues with the same start (transfer::Ack), so that no robot sends them again.
 ///
-/// A piece is to be acknowledged once it is written. Where that is impossible (the disk is
-/// full, the file would become too long), the file is removed and pieces are kept in memory from then on:
+/// A piece is to be acknowledged once it is written. A file that would become too long is written again from
+/// the present map, in parallel to the home strand. Where writing is impossible (the disk is full, or the
+/// file stays longer than half of its limit), the file is removed and pieces are kept in memory from then on:
 /// then the next start of the station is a new one, and robots send all again. While the file can be neither
 /// written nor removed, no piece is kept.
 class MapJournal {
  public:
-  /// `disk` null: in memory only. `trouble`: the map is in memory only from now on, and why.
+  /// Packs a copy of the map, on any thread.
+  using PackMap = std::function<std::vector<JournalPiece>()>;
+
+  /// `disk` null: in memory only. `trouble`: the map is in memory only from now on, and why. `copy_map`:
+  /// copies the map with all pieces that were added, on the home strand; empty: a file is not written again.
   MapJournal(MapJournalParams params, std::shared_ptr<store::Disk> disk, Executor& home,
-             std::function<void(const std::string& text)> trouble);
+             std::function<void(const std::string& text)> trouble, std::function<PackMap()> copy_map = {});
   ~MapJournal();
   MapJournal(const MapJournal&) = delete;
   MapJournal& operator=(const MapJournal&) = delete;
@@ -55,16 +60,24 @@ class MapJournal {
   /// Reads the file; one that is damaged is copied aside. Call begin() after it, or resume() if the file is
   /// whole.
   LoadedJournal load();
-  /// Begins a new file with these pieces; pieces that wait for the disk are not kept. `start` 0: the next
-  /// start of the station is a new one, as the file does not have all that was acknowledged.
+  /// Begins a new file with these pieces; pieces that wait for the disk are not kept.
   void begin(std::uint32_t start, const std::vector<JournalPiece>& pieces);
   /// Copies the file aside, before it is replaced; returns the copy's name, empty if there is none.
   std::string copy_aside();
   /// Continues the file that load() read, of which nothing is lost or unfinished.
-  void resume(std::size_t bytes) { bytes_ = bytes; }
+  void resume(std::uint32_t start, std::size_t bytes) {
+    start_ = start;
+    bytes_ = bytes;
+  }
   /// Adds a piece; calls `kept` when it is written, or the map is in memory only. One for which there is no
   /// room is not kept, and comes again.
   void add(JournalPiece piece, std::function<void()> kept);
+  /// The next start of the station is a new one, as something will be acknowledged that is not here. Calls
+  /// `kept` when that is written, or the map is in memory only; not while it is being written: then what is
+  /// to be acknowledged comes again.
+  void end_start(std::function<void()> kept);
+  /// Forgets what was added of a robot so far; the next start of the station is a new one.
+  void forget(const std::string& robot);
 
   static constexpr const char* kFile = "map-pieces";
 
@@ -73,9 +86,13 @@ class MapJournal {
     JournalPiece piece{};
     std::function<void()> kept{};
   };
+  /// Whether the file says that its start has ended.
+  enum class Ended { no, waiting, written };
   struct Batch;
   void replace();
+  void schedule(Duration delay);
   void write();
+  void write_again();
   void start(const std::shared_ptr<Batch>& batch);
   void written(const Batch& batch);
   static void keep(const std::vector<Waiting>& pieces);
@@ -84,6 +101,9 @@ class MapJournal {
   std::shared_ptr<store::Disk> disk_;  ///< Null: in memory only.
   Executor& home_;
   std::function<void(const std::string&)> trouble_;
+  std::function<PackMap()> copy_map_;
+  std::uint32_t start_{};
+  Ended ended_{Ended::no};
   std::vector<Waiting> waiting_{};
   std::size_t waiting_bytes_{}, bytes_{};
   std::string useless_{};  ///< Why the file must be removed; empty: it must not.

@@ -46,8 +46,11 @@ std::vector<JournalPiece> pieces_of(const ChunkStore& chunks) {
 }
 
 MapReplica::MapReplica(std::uint32_t start, std::shared_ptr<store::Disk> disk, Executor& home,
-                       std::function<void(const std::string& text)> trouble)
-    : home_(home), start_(start), journal_({}, std::move(disk), home, std::move(trouble)) {}
+                       std::function<void(const std::string& text)> trouble, MapJournalParams journal)
+    : home_(home), start_(start), journal_(journal, std::move(disk), home, std::move(trouble), [this] {
+        // The copy takes a small part of the time that packing takes.
+        return [chunks = std::make_shared<const ChunkStore>(chunks())] { return pieces_of(*chunks); };
+      }) {}
 
 std::string MapReplica::load() {
   LoadedJournal loaded = journal_.load();
@@ -60,35 +63,45 @@ std::string MapReplica::load() {
       loaded.start = 0;
     }
   if (loaded.start != 0) start_ = loaded.start;
+  for (const auto& [name, robot] : chunks().robots()) written_.insert(name);
   const bool long_file = loaded.bytes > std::max(kLongFile, kBytesOfBlock * chunks().blocks());
   if (loaded.start == 0 || loaded.unfinished || long_file)
     journal_.begin(start_, pieces_of(chunks()));
   else
-    journal_.resume(loaded.bytes);
+    journal_.resume(start_, loaded.bytes);
   return loaded.lost;
 }
 
 Result<void> MapReplica::take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
                               std::span<const std::uint8_t> data, std::function<void()> stored) {
   const Result<void> taken = receiver_.take(robot, kind, waiting, data, home_.now());
-  const bool comes_again =
-      !taken && (taken.reason() == Reason::malformed || taken.reason() == Reason::out_of_range);
-  if (taken)
+  if (chunks().evicted() != evicted_) forget_evicted();
+  if (taken) {
+    written_.insert(robot);
     journal_.add({robot, kind, {data.begin(), data.end()}}, std::move(stored));
-  else if (!comes_again)
-    stored();  // What does not fit, or will never be understood, would come again without end.
-  // The start under which that was acknowledged, or an earlier robot's map forgotten, ends with this process:
-  // perhaps the next one understands it, or has room.
-  const bool lacks = !taken && !comes_again;
-  if ((lacks || chunks().evicted() > 0) && !std::exchange(incomplete_, true))
-    journal_.begin(0, pieces_of(chunks()));
+  } else if (taken.reason() != Reason::malformed && taken.reason() != Reason::out_of_range) {
+    // What does not fit, or will never be understood, would come again without end. Perhaps the next process
+    // understands it, or has room.
+    journal_.end_start(std::move(stored));
+  }
   return taken;
+}
+
+/// Before a piece of the robot for which they made room: there may be no room for it when the file is read.
+void MapReplica::forget_evicted() {
+  evicted_ = chunks().evicted();
+  std::erase_if(written_, [this](const std::string& name) {
+    if (chunks().robots().contains(name)) return false;
+    journal_.forget(name);
+    return true;
+  });
 }
 
 void MapReplica::forget(std::uint32_t start) {
   start_ = start;
-  incomplete_ = false;
   receiver_.forget();
+  written_.clear();
+  evicted_ = 0;
   journal_.begin(start_, {});
 }
 

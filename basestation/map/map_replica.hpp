@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "basestation/map/map_journal.hpp"
@@ -14,7 +15,7 @@ class MapReplica {
  public:
   /// `start`: drawn at this start of the station. `trouble`: the map is in memory only from now on.
   MapReplica(std::uint32_t start, std::shared_ptr<store::Disk> disk, Executor& home,
-             std::function<void(const std::string& text)> trouble);
+             std::function<void(const std::string& text)> trouble, MapJournalParams journal = {});
 
   /// Loads the maps on the disk; returns what is lost, as text. Call it before anything else.
   std::string load();
@@ -31,10 +32,13 @@ class MapReplica {
   const MapReceiver& receiver() const { return receiver_; }
 
  private:
+  void forget_evicted();
+
   Executor& home_;
   std::uint32_t start_;
-  bool incomplete_{false};  ///< Something was acknowledged that is not here.
   MapReceiver receiver_{};
+  std::set<std::string> written_{};  ///< Robots with pieces in the journal.
+  std::uint64_t evicted_{};          ///< ChunkStore::evicted(), as far as the journal has it.
   MapJournal journal_;
 };
 

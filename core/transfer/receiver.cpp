@@ -55,9 +55,11 @@ std::optional<std::vector<std::pair<std::string, Receipt>>> Receiver::due(Time n
   acknowledged_ = now;
   std::vector<std::pair<std::string, Receipt>> out;
   const auto add = [&](bool news) {
-    for (auto& [name, sender] : senders_) {
-      if (sender.news != news || now - sender.heard > kForgotten || out.size() >= params_.max_receipts)
-        continue;
+    auto next = senders_.upper_bound(turn_);
+    for (std::size_t n = 0; n < senders_.size() && out.size() < params_.max_receipts; ++n, ++next) {
+      if (next == senders_.end()) next = senders_.begin();
+      auto& [name, sender] = *next;
+      if (sender.news != news || now - sender.heard > kForgotten) continue;
       out.emplace_back(name, sender.receipt);
       if (news) sender.news = false;
     }
@@ -66,6 +68,7 @@ std::optional<std::vector<std::pair<std::string, Receipt>>> Receiver::due(Time n
       std::count_if(senders_.begin(), senders_.end(), [](const auto& s) { return s.second.news; });
   if (with_news == 0) add(false);  // A receipt that was lost is repeated with those while nothing arrives.
   add(true);
+  turn_ = out.size() < params_.max_receipts ? std::string{} : out.back().first;
   news_ = static_cast<std::size_t>(with_news) > params_.max_receipts;
   return out;
 }

@@ -42,6 +42,8 @@ class Receiver {
   };
   ReceiverParams params_;
   std::map<std::string, Sender> senders_{};
+  std::string
+      turn_{};  ///< The last sender in an acknowledgement that was full: the next one begins after it.
   bool news_{true};
   std::optional<Time> acknowledged_{};
 };

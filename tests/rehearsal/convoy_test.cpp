@@ -20,17 +20,20 @@ void holds(const RunReport& report) {
   for (const std::string& line : report.complaints()) ADD_FAILURE() << line;
 }
 
-TEST(Convoy, TheShippedScenariosHold) {
-  for (const char* file : {"convoy_two.yaml", "convoy_peel.yaml", "convoy_cut.yaml"}) {
-    const Scenario scenario = load_shipped(file);
-    RunParams params;
-    params.make_agent = *make_agent_factory("");
-    params.seed = scenario.seed;
-    const auto outcome = rehearse(scenario, *make_world(scenario.world), params);
-    ASSERT_TRUE(outcome.ok()) << outcome.error().text;
-    holds(outcome->report);
-  }
+class ConvoyScenarios : public testing::TestWithParam<const char*> {};
+
+TEST_P(ConvoyScenarios, Hold) {
+  const Scenario scenario = load_shipped(std::string(GetParam()) + ".yaml");
+  RunParams params;
+  params.make_agent = *make_agent_factory("");
+  params.seed = scenario.seed;
+  const auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().text;
+  holds(outcome->report);
 }
+
+INSTANTIATE_TEST_SUITE_P(Config, ConvoyScenarios, testing::Values("convoy_two", "convoy_peel", "convoy_cut"),
+                         [](const auto& which) { return std::string(which.param); });
 
 TEST(RightOfWay, ARobotClearsACorridorOnceItsHolderAllowsIt) {
   const Scenario scenario = load_shipped("yield_pocket.yaml");

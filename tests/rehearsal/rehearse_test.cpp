@@ -174,7 +174,8 @@ class Scenarios : public testing::TestWithParam<const char*> {};
 
 TEST_P(Scenarios, EverythingHolds) {
   const Scenario scenario = load_shipped(std::string(GetParam()) + ".yaml");
-  for (std::uint64_t seed : {1, 2, 3}) {
+  const bool large = scenario.robots.size() > 5;
+  for (std::uint64_t seed = 1; seed <= seeds(large ? 1 : 3, 3); ++seed) {
     const RunReport report = run(scenario, seed).report;
     for (const std::string& line : report.complaints()) ADD_FAILURE() << "seed " << seed << ": " << line;
     if (scenario.lidar == LidarKind::full) break;  // one seed of those that take seconds
@@ -195,18 +196,18 @@ TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {
   Scenario scenario = load_shipped("demo.yaml");
   scenario.lidar = LidarKind::planar;
   for (RobotSpec& robot : scenario.robots) robot.settings.perception = PerceptionLevel::off;
-  for (std::uint64_t seed : {1, 2, 3, 4})
+  for (std::uint64_t seed = 1; seed <= seeds(2, 4); ++seed)
     for (const std::string& line : run(scenario, seed).report.complaints())
       ADD_FAILURE() << "seed " << seed << ": " << line;
 }
 
 /// Random commands of three operators over 20 % loss.
-class Storm : public testing::TestWithParam<int> {};
+class Storm : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(Storm, EveryRuleHolds) {
   const Scenario scenario = load_shipped("authority_storm.yaml");
-  for (int i = 0; i < 5; ++i) {
-    const RunReport report = run(scenario, static_cast<std::uint64_t>(GetParam() + i), 1).report;
+  for (std::uint64_t i = 0; i < seeds(2, 5); ++i) {
+    const RunReport report = run(scenario, GetParam() + i, 1).report;
     for (const std::string& line : report.complaints())
       ADD_FAILURE() << "seed " << GetParam() + i << ": " << line;
     EXPECT_GE(report.commands.sent, 100U);
@@ -217,8 +218,8 @@ TEST_P(Storm, EveryRuleHolds) {
 // The same with crashes, cuts, a hanging stick and a forger.
 TEST_P(Storm, EveryRuleHoldsUnderFaults) {
   const Scenario scenario = load_shipped("fault_storm.yaml");
-  for (int i = 0; i < 5; ++i) {
-    const RunReport report = run(scenario, static_cast<std::uint64_t>(GetParam() + i), 1).report;
+  for (std::uint64_t i = 0; i < seeds(2, 5); ++i) {
+    const RunReport report = run(scenario, GetParam() + i, 1).report;
     for (const std::string& line : report.complaints())
       ADD_FAILURE() << "seed " << GetParam() + i << ": " << line;
   }

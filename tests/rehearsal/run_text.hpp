@@ -2,6 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <string>
 
 #include "sim/rehearsal/rehearsal.hpp"
@@ -9,6 +10,11 @@
 #include "tests/folders/folders.hpp"
 
 namespace adit::sim {
+
+/// Number of seeds of a case: `few`, or with ADIT_ALL_SEEDS in the environment (tests of label long) `all`.
+inline std::uint64_t seeds(std::uint64_t few, std::uint64_t all) {
+  return std::getenv("ADIT_ALL_SEEDS") != nullptr ? all : few;
+}
 
 /// A scenario of config/scenarios.
 inline Scenario load_shipped(const std::string& file) {

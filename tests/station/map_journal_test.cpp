@@ -23,7 +23,7 @@ class MapJournalTest : public testing::Test {
     if (loaded.start == 0 || loaded.unfinished)
       journal->begin(loaded.start == 0 ? ++start : loaded.start, loaded.pieces);
     else
-      journal->resume(loaded.bytes);
+      journal->resume(loaded.start, loaded.bytes);
     return loaded;
   }
   void add(std::uint32_t id, std::size_t bytes = 100) {
@@ -161,6 +161,62 @@ TEST_F(MapJournalTest, AFileThatGrowsTooLongIsGivenUp) {
   EXPECT_EQ(kept.size(), 20U);
   EXPECT_EQ(troubles.size(), 1U);
   EXPECT_EQ(restart().start, 0U);
+}
+
+TEST_F(MapJournalTest, AFileThatIsWrittenAgainAndStaysLongIsGivenUp) {
+  int packed = 0;
+  const auto all = [&packed] {
+    ++packed;
+    return [] { return std::vector<JournalPiece>(6, {"r1", 1, store::Bytes(100, 7)}); };
+  };
+  journal.emplace(
+      MapJournalParams{.max_bytes = 1000}, disk, *strand,
+      [this](const std::string& text) { troubles.push_back(text); }, all);
+  (void)journal->load();
+  journal->begin(41, {});
+  for (std::uint32_t id = 1; id <= 30; ++id) {
+    add(id);
+    run(1s);
+  }
+  EXPECT_EQ(packed, 1);
+  EXPECT_EQ(troubles.size(), 1U);
+  add(31);
+  EXPECT_EQ(kept.back(), 31U) << "in memory";
+  EXPECT_EQ(restart().start, 0U);
+}
+
+TEST_F(MapJournalTest, AStartThatEndedIsKeptAsSuchOnce) {
+  restart();
+  add(1);
+  journal->end_start([this] { kept.push_back(100); });
+  journal->end_start([this] { kept.push_back(101); });
+  EXPECT_THAT(kept, IsEmpty());
+  run(1s);
+  EXPECT_THAT(kept, ElementsAre(1, 100)) << "the second one comes again";
+  const std::size_t bytes = file().size();
+  journal->end_start([this] { kept.push_back(102); });
+  EXPECT_THAT(kept, ElementsAre(1, 100, 102));
+  add(2);
+  run(1s);
+  EXPECT_GT(file().size(), bytes);
+  const LoadedJournal loaded = restart();
+  EXPECT_EQ(loaded.start, 0U);
+  EXPECT_EQ(loaded.lost, "");
+  EXPECT_THAT(contents(loaded), ElementsAre(1, 2));
+}
+
+TEST_F(MapJournalTest, ARobotThatWasForgottenIsNotReadUntilItIsHeardAgain) {
+  restart();
+  add(1);
+  journal->forget("r2");
+  add(2);
+  journal->forget("r1");
+  add(3);
+  run(1s);
+  EXPECT_THAT(kept, ElementsAre(1, 2, 3));
+  const LoadedJournal loaded = restart();
+  EXPECT_EQ(loaded.start, 0U);
+  EXPECT_THAT(contents(loaded), ElementsAre(3));
 }
 
 TEST_F(MapJournalTest, WhatWaitsForTheDiskIsBounded) {

@@ -14,12 +14,19 @@ namespace {
 class MapReplicaTest : public testing::Test {
  protected:
   MapReplicaTest() { restart(); }
-  std::string restart() {
-    replica.emplace(++starts, disk, *strand, [this](const std::string& text) { troubles.push_back(text); });
+  std::string restart(MapJournalParams params = {}) {
+    replica.emplace(
+        ++starts, disk, *strand, [this](const std::string& text) { troubles.push_back(text); }, params);
     return replica->load();
   }
-  Result<void> take(transfer::Kind kind, const std::vector<std::uint8_t>& data) {
-    return replica->take("r1", static_cast<std::uint8_t>(kind), 0, data, [this] { ++stored; });
+  Result<void> take(transfer::Kind kind, const std::vector<std::uint8_t>& data,
+                    const std::string& robot = "r1") {
+    return replica->take(robot, static_cast<std::uint8_t>(kind), 0, data, [this] { ++stored; });
+  }
+  /// A piece of a kind that this release does not know.
+  void send_unknown() {
+    EXPECT_EQ(replica->take("r1", 77, 0, std::vector<std::uint8_t>{1, 2}, [this] { ++stored; }).reason(),
+              Reason::not_supported);
   }
   /// Some blocks of a submap, with any revisions.
   void send_blocks(std::uint32_t submap, int count) {
@@ -35,11 +42,13 @@ class MapReplicaTest : public testing::Test {
                      perception::pack({"r1", 5, submap}, blocks, transfer::kMaxPieceBytes).bytes)
                     .ok());
   }
-  void send_pose(std::uint32_t submap, double x, std::uint32_t revision) {
+  void send_pose(std::uint32_t submap, double x, std::uint32_t revision, const std::string& robot = "r1") {
     EXPECT_TRUE(take(transfer::Kind::map_poses,
-                     perception::encode({{{{"r1", 5, submap}, Pose3::level({x, 1, 0.5}, 0.2), revision}}}))
+                     perception::encode({{{{robot, 5, submap}, Pose3::level({x, 1, 0.5}, 0.2), revision}}}),
+                     robot)
                     .ok());
   }
+  std::size_t file_bytes() const { return disk->read(MapJournal::kFile)->value().size(); }
   void run(Duration span) { scheduler.run_until(scheduler.elapsed() + span); }
   using Content = std::map<std::pair<std::uint32_t, perception::BlockIndex>, std::array<std::uint64_t, 3>>;
   Content content() const {
@@ -106,7 +115,7 @@ TEST_F(MapReplicaTest, ADamagedFileMakesTheStartANewOneAndKeepsWhatCanBeRead) {
 }
 
 TEST_F(MapReplicaTest, ALongFileOfOldStatesIsWrittenAgain) {
-  for (int n = 0; n < 1500; ++n) {
+  for (int n = 0; n < 500; ++n) {
     send_blocks(0, 60);
     if (n % 20 == 0) run(200ms);
   }
@@ -145,9 +154,12 @@ TEST_F(MapReplicaTest, WhatWasAcknowledgedWithoutBeingUnderstoodEndsTheStart) {
   run(1s);
   const Content before = content();
   const std::uint32_t start = replica->start();
-  EXPECT_EQ(replica->take("r1", 77, 0, std::vector<std::uint8_t>{1, 2}, [this] { ++stored; }).reason(),
-            Reason::not_supported);
+  send_unknown();
+  EXPECT_EQ(stored, 1) << "the disk does not say yet that something is missing";
+  run(1s);
   EXPECT_EQ(stored, 2) << "it would come again without end";
+  send_unknown();
+  EXPECT_EQ(stored, 3) << "the disk says so";
   send_pose(0, 1, 1);
   run(1s);
   EXPECT_EQ(restart(), "");
@@ -155,6 +167,133 @@ TEST_F(MapReplicaTest, WhatWasAcknowledgedWithoutBeingUnderstoodEndsTheStart) {
   EXPECT_EQ(content(), before);
   EXPECT_TRUE(replica->chunks().robots().at("r1").submaps.begin()->second.T_map_submap)
       << "the journal goes on";
+}
+
+TEST_F(MapReplicaTest, APieceThatIsRefusedDoesNotWriteTheMapAgain) {
+  for (std::uint32_t submap = 0; submap < 20; ++submap) send_blocks(submap, 60);
+  run(1s);
+  const std::uint64_t before = disk->steps();
+  for (int n = 0; n < 1000; ++n) {
+    send_unknown();
+    if (n % 100 == 0) run(200ms);
+  }
+  run(1s);
+  EXPECT_LT(disk->steps() - before, 100U) << "bytes, and syncs";
+}
+
+TEST_F(MapReplicaTest, APowerCutDoesNotBringAnEndedStartBack) {
+  for (std::uint64_t step = 0; step < 40; ++step) {
+    disk = std::make_shared<store::MemoryDisk>(step);
+    restart();
+    send_blocks(0, 30);
+    run(1s);
+    const std::uint32_t start = replica->start();
+    stored = 0;
+    disk->cut_power_after(step);
+    send_unknown();
+    run(1s);
+    disk->power_up();
+    restart();
+    EXPECT_TRUE(stored == 0 || replica->start() != start) << step;
+    EXPECT_FALSE(content().empty());
+  }
+}
+
+TEST_F(MapReplicaTest, ARobotThatMadeRoomDoesNotComeBackAndTheOneThatIsHeardStays) {
+  for (int robot = 0; robot < 64; ++robot) send_pose(0, robot, 1, "old" + std::to_string(robot));
+  run(1s);
+  EXPECT_EQ(restart(), "");
+  const std::uint32_t start = replica->start();
+  const std::uint64_t before = disk->steps();
+  send_pose(0, 7, 1, "r1");
+  EXPECT_FALSE(replica->chunks().robots().contains("old0"));
+  run(1s);
+  EXPECT_LT(disk->steps() - before, 300U);
+  send_pose(0, 8, 1, "r2");
+  send_pose(0, 9, 1, "old0");
+  run(1s);
+  EXPECT_EQ(restart(), "") << "nothing is damaged";
+  EXPECT_NE(replica->start(), start) << "what was forgotten was acknowledged";
+  const auto& robots = replica->chunks().robots();
+  EXPECT_EQ(robots.size(), 64U);
+  for (const char* name : {"r1", "r2", "old0"}) EXPECT_TRUE(robots.contains(name)) << name;
+  for (const char* name : {"old1", "old10"}) EXPECT_FALSE(robots.contains(name)) << name;
+}
+
+TEST_F(MapReplicaTest, AFileAtItsLimitIsWrittenAgainWhileTheStationRuns) {
+  const MapJournalParams params{.max_bytes = 40'000};
+  restart(params);
+  const std::uint32_t start = replica->start();
+  std::uint32_t sent = 0;
+  for (int n = 0; n < 2000; ++n, ++sent) {
+    send_pose(0, n, static_cast<std::uint32_t>(n) + 1);
+    if (n % 10 == 0) run(200ms);
+    if (n % 100 == 0) {
+      send_blocks(1, 3);
+      ++sent;
+    }
+    ASSERT_LE(file_bytes(), params.max_bytes);
+  }
+  run(1s);
+  EXPECT_TRUE(troubles.empty()) << troubles[0];
+  EXPECT_EQ(stored, static_cast<int>(sent));
+  const Content before = content();
+  EXPECT_EQ(restart(params), "");
+  EXPECT_EQ(replica->start(), start) << "nothing is missing";
+  EXPECT_EQ(content(), before);
+  EXPECT_EQ(replica->chunks().robots().at("r1").submaps.begin()->second.pose_revision, 2000U);
+}
+
+TEST_F(MapReplicaTest, AnEndedStartStaysEndedWhenTheFileIsWrittenAgain) {
+  const MapJournalParams params{.max_bytes = 10'000};
+  restart(params);
+  const std::uint32_t start = replica->start();
+  send_unknown();
+  for (int n = 0; n < 500; ++n) {
+    send_pose(0, n, static_cast<std::uint32_t>(n) + 1);
+    if (n % 10 == 0) run(200ms);
+  }
+  EXPECT_TRUE(troubles.empty());
+  restart(params);
+  EXPECT_NE(replica->start(), start);
+}
+
+TEST_F(MapReplicaTest, ForgettingWhileTheFileIsWrittenAgainForgetsAll) {
+  const MapJournalParams params{.max_bytes = 10'000, .write = 50ms};
+  for (int pause = 0; pause < 30; ++pause) {
+    restart(params);
+    for (int n = 0; n < 100; ++n) {
+      send_pose(0, n, static_cast<std::uint32_t>(n) + 1);
+      if (n % 10 == 0) run(160ms);
+    }
+    run(pause * 10ms);
+    replica->forget(900);
+    run(1s);
+    restart(params);
+    EXPECT_TRUE(replica->chunks().robots().empty());
+  }
+}
+
+TEST_F(MapReplicaTest, APowerCutWhileTheFileIsWrittenAgainLosesNothing) {
+  const MapJournalParams params{.max_bytes = 10'000};
+  for (std::uint64_t step = 0; step < 12'000; step += 97) {
+    disk = std::make_shared<store::MemoryDisk>(step);
+    restart(params);
+    stored = 0;
+    disk->cut_power_after(step);
+    int n = 0;
+    for (; n < 160; ++n) {
+      send_pose(static_cast<std::uint32_t>(n % 3), n, static_cast<std::uint32_t>(n) + 1);
+      if (n % 10 == 0) run(200ms);
+    }
+    disk->power_up();
+    restart(params);
+    std::uint32_t newest = 0;
+    if (const auto& robots = replica->chunks().robots(); robots.contains("r1"))
+      for (const auto& [key, submap] : robots.at("r1").submaps)
+        newest = std::max(newest, submap.pose_revision);
+    EXPECT_GE(newest, static_cast<std::uint32_t>(stored)) << "cut after " << step;
+  }
 }
 
 TEST_F(MapReplicaTest, AForgottenMapDoesNotComeBackWhenTheDiskWasFull) {

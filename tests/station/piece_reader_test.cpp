@@ -85,5 +85,20 @@ TEST_F(PieceReaderTest, IsBoundedWhateverTheNumberOfRobots) {
   EXPECT_TRUE(receipt("r1").has(1));
 }
 
+TEST_F(PieceReaderTest, ASurplusOfRobotsDoesNotDisplaceThoseThatAreHeard) {
+  take(5, 1, 3, "r1");
+  const PieceReader::Stored of_r1 = stored.at(1);
+  for (int i = 0; i < 200; ++i) {
+    take(5, 2, 3, "surplus" + std::to_string(i));
+    stored.at(2)();
+  }
+  of_r1();
+  EXPECT_TRUE(receipt("r1").has(1)) << "its disk took some time";
+  now += 31s;
+  take(5, 3, 3, "late");
+  stored.at(3)();
+  EXPECT_TRUE(receipt("late").has(3)) << "others are silent";
+}
+
 }  // namespace
 }  // namespace adit::station

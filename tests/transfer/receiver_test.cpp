@@ -55,6 +55,28 @@ TEST(Receiver, ShowsNowAndThenThatItIsThere) {
   EXPECT_EQ(sent, 10);
 }
 
+TEST(Receiver, EachOfManySendersHasItsTurn) {
+  // Pieces of all come all the time, or have come: what is acknowledged is lost now and then, and repeated.
+  for (const bool all_the_time : {true, false}) {
+    Receiver receiver;
+    std::map<std::string, int> receipts;
+    for (std::uint32_t i = 1; i <= 40; ++i) {
+      const Time now{i * 500ms};
+      if (all_the_time || i == 1)
+        for (int n = 0; n < 40; ++n) receiver.take("r" + std::to_string(n), 5, i, now);
+      const auto due = receiver.due(now, kWide);
+      if (!due) continue;
+      EXPECT_LE(due->size(), 16U);
+      for (const auto& [name, receipt] : *due) ++receipts[name];
+    }
+    EXPECT_EQ(receipts.size(), 40U);
+    int fewest = 1000, most = 0;
+    for (const auto& [name, count] : receipts) fewest = std::min(fewest, count), most = std::max(most, count);
+    EXPECT_GE(fewest, all_the_time ? 15 : 2);
+    EXPECT_LE(most, fewest + 1);
+  }
+}
+
 TEST(Receiver, AnotherSessionBeginsAnew) {
   Receiver receiver;
   receiver.take("r1", 5, 90, Time{});
