@@ -23,7 +23,7 @@ ChunkStore::Submap* ChunkStore::submap(const std::string& robot, const perceptio
 
 void ChunkStore::clear() {
   robots_.clear();
-  blocks_ = 0;
+  blocks_ = carried_blocks_ = 0;
   evicted_ = 0;
   ++revision_;
 }
@@ -34,9 +34,10 @@ bool ChunkStore::make_room(const std::string& robot) {
   for (auto it = robots_.begin(); it != robots_.end(); ++it) {
     if (it->second.heard || it->first == robot) continue;
     blocks_ -= it->second.blocks;
+    carried_blocks_ -= it->second.carried_blocks;
+    evicted_ += it->second.pieces > 0 ? 1 : 0;  // The robot itself does not count on what was carried.
     robots_.erase(it);
     ++revision_;
-    ++evicted_;
     return true;
   }
   return false;
@@ -51,6 +52,7 @@ bool ChunkStore::count(const std::string& robot, std::size_t bytes, std::uint32_
   ++from.pieces;
   from.waiting = waiting;
   from.heard = now;
+  set_now(now);
   return true;
 }
 
@@ -71,13 +73,10 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
         complete = false;
         continue;
       }
-      ++blocks_;
-      ++robots_.at(robot).blocks;
-    } else if (update.revision <= known->second.revision) {
+    } else if (update.revision <= known->second.revision && known->second.carried == 0) {
       continue;
     }
-    ++revision_;
-    into->blocks[update.block.index] = {update.block.known, update.block.occupied, update.revision};
+    put(robots_.at(robot), *into, piece.key, update, false);
   }
   return complete;
 }
@@ -89,10 +88,8 @@ bool ChunkStore::take(const std::string& robot, const perception::SubmapPoses& p
     if (into == nullptr) {
       ++refused_;
       complete = false;
-    } else if (!into->T_map_submap || pose.revision > into->pose_revision) {
-      into->T_map_submap = pose.T_map_submap;
-      into->pose_revision = pose.revision;
-      ++revision_;
+    } else if (!into->T_map_submap || pose.revision > into->pose_revision || into->pose_carried) {
+      put(robots_.at(robot), *into, pose, false);
     }
   }
   return complete;

@@ -281,10 +281,12 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
   for (std::size_t i = 0; i < packed.count; ++i) {
     Place& place = cells_.at(chosen[i]);
     place.waits_since.reset();
+    // A silent peer that acknowledged the same state still has it.
+    const auto has = static_cast<std::uint16_t>(place.is_sent() ? place.up_to_date & place.had_by : 0);
     place.sent_known = place.known;
     place.sent_occupied = place.occupied;
     place.sent_change = place.change;
-    place.up_to_date = place.had_by = 0;
+    place.up_to_date = place.had_by = has;
     parts.push_back({chosen[i], place.change});
     for (const PeerId& id : peers)
       if (const auto peer = peers_.find(id); peer != peers_.end()) {
