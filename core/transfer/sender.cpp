@@ -21,10 +21,14 @@ bool Sender::make_room(bool for_carrier, Time now) {
   const bool silent = now - last->second.heard >= params_.silence;
   // What a silent station has is worth more than a carrier.
   if (for_carrier ? !last->second.carrier || !silent : !last->second.carrier && !silent) return false;
-  for (Source* source : sources_) source->leave(last->first);
-  for (Flight& flight : flights_) std::erase(flight.awaited, last->first);
-  peers_.erase(last);
+  forget(last->first);
   return true;
+}
+
+void Sender::forget(PeerId peer) {
+  for (Source* source : sources_) source->leave(peer);
+  for (Flight& flight : flights_) std::erase(flight.awaited, peer);
+  peers_.erase(peer);
 }
 
 void Sender::join(const Ack& ack) {
@@ -33,7 +37,11 @@ void Sender::join(const Ack& ack) {
 }
 
 Sender::Peer* Sender::admit(const Ack& ack, Time now) {
-  const auto found = peers_.find(ack.peer);
+  auto found = peers_.find(ack.peer);
+  if (found != peers_.end() && found->second.carrier && !ack.carrier) {
+    forget(ack.peer);  // A robot says that it is a carrier by a station's id.
+    found = peers_.end();
+  }
   if (found == peers_.end()) {
     if (!make_room(ack.carrier, now)) return nullptr;
     Peer& peer = peers_[ack.peer];

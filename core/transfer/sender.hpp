@@ -78,6 +78,7 @@ class Sender {
   Peer* admit(const Ack& ack, Time now);
   /// Forgets a peer if there are too many. Returns false if none may go.
   bool make_room(bool for_carrier, Time now);
+  void forget(PeerId peer);
   void join(const Ack& ack);
   bool is_served(const Peer& peer, Time now) const {
     return peer.carrier == serves_carriers(now) && now - peer.heard < params_.silence;

@@ -81,9 +81,12 @@ TEST_F(CarriersTest, AStationTakesACarriersSlotAndACarrierNoStations) {
   EXPECT_EQ(sender.peers(), 16U);
 }
 
-TEST_F(CarriersTest, APeerIsAStationOrACarrier) {
+TEST_F(CarriersTest, ARobotThatUsesAStationsIdKeepsItFromNothing) {
   EXPECT_TRUE(sender.acknowledged(ack(1, true), now));
-  EXPECT_FALSE(sender.acknowledged(ack(1, false), now));
+  EXPECT_TRUE(sender.acknowledged(ack(1, false), now));
+  EXPECT_FALSE(sender.acknowledged(ack(1, true), now));
+  EXPECT_EQ(sender.peers(), 1U);
+  EXPECT_FALSE(run(5s, {ack(1, false)}).empty());
   EXPECT_TRUE(sender.acknowledged(ack(2, false), now));
   EXPECT_FALSE(sender.acknowledged(ack(2, true), now));
 }
