@@ -8,14 +8,22 @@ namespace adit::station {
 namespace {
 
 constexpr Duration kTick = 100ms;
+constexpr Duration kHeardNow = 10s;  // A carrier sends nothing of a robot that was heard more recently.
+
+bool is_heard(const ChunkStore::Robot& robot, std::optional<Time> now) {
+  return robot.heard && now && *now - *robot.heard < kHeardNow;
+}
 
 }  // namespace
 
+std::uint32_t ChunkStore::clock(Time now) const {
+  if (!begun_) return 0;
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>((now - *begun_) / kTick, 0, 1LL << 30)) + 1;
+}
+
 void ChunkStore::set_now(std::optional<Time> now) {
   if (now && !begun_) begun_ = now;
-  now_ =
-      now ? static_cast<std::uint32_t>(std::clamp<std::int64_t>((*now - *begun_) / kTick, 0, 1LL << 30)) + 1
-          : 0;
+  now_ = now ? clock(*now) : 0;
 }
 
 std::optional<Duration> ChunkStore::age(const Block& block, Time now) const {
@@ -51,6 +59,10 @@ void ChunkStore::put(Robot& robot, Submap& submap, const perception::SubmapPose&
   ++revision_;
 }
 
+void ChunkStore::note_waiting(const std::string& robot, std::uint32_t waiting) {
+  if (const auto found = robots_.find(robot); found != robots_.end()) found->second.waiting = waiting;
+}
+
 ChunkStore::Robot* ChunkStore::count_carried(const std::string& carrier, const std::string& robot,
                                              std::size_t bytes, std::optional<Time> now) {
   if (!robots_.contains(robot)) {
@@ -83,8 +95,9 @@ Result<std::size_t> ChunkStore::take_carried(const std::string& carrier, const p
     const perception::BlockUpdate& update = piece.blocks[i];
     const auto known = into->blocks.find(update.block.index);
     const bool is_new = known == into->blocks.end();
-    if (!is_new && update.revision <= known->second.revision) continue;
     const bool replaces_carried = !is_new && known->second.carried != 0;
+    if (!is_new && update.revision <= known->second.revision) continue;
+    if (!is_new && !replaces_carried && is_heard(*robot, now)) continue;
     if ((is_new && blocks_ >= params_.max_blocks) ||
         (!replaces_carried && carried_blocks_ >= params_.max_carried_blocks)) {
       ++refused;
@@ -108,7 +121,8 @@ Result<std::size_t> ChunkStore::take_carried(const std::string& carrier, const p
     Submap* into = robot != nullptr ? submap(name, pose.key) : nullptr;
     if (into == nullptr) {
       ++refused;
-    } else if (!into->T_map_submap || pose.revision > into->pose_revision) {
+    } else if (!into->T_map_submap ||
+               (pose.revision > into->pose_revision && (into->pose_carried || !is_heard(*robot, now)))) {
       put(*robot, *into, pose, true);
       ++newer;
     }

@@ -2,12 +2,12 @@
 #include "basestation/map/chunk_store.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "basestation/map/ground_columns.hpp"
 
 namespace adit::station {
 namespace {
 
-using perception::BlockIndex;
 using perception::CoarseBlock;
 
 }  // namespace
@@ -101,19 +101,8 @@ double ChunkStore::area(const std::string& robot) const {
   for (const auto& [name, from] : robots_) {
     if (!robot.empty() && name != robot) continue;
     for (const auto& [key, submap] : from.submaps) {
-      if (!submap.T_map_submap) continue;
-      for (const auto& [index, block] : submap.blocks) {
-        std::uint64_t columns = block.known;
-        columns = (columns | columns >> 32 | columns >> 16 | columns >> 48) & 0xffff;
-        for (int column = 0; column < 16; ++column) {
-          if ((columns >> column & 1) == 0) continue;
-          const Eigen::Vector3d centre((index.x * 4 + column % 4 + 0.5) * kCell,
-                                       (index.y * 4 + column / 4 + 0.5) * kCell, (index.z * 4 + 2) * kCell);
-          const Eigen::Vector3d at = *submap.T_map_submap * centre;
-          cells.emplace_back(static_cast<std::int32_t>(std::floor(at.x() / kCell)),
-                             static_cast<std::int32_t>(std::floor(at.y() / kCell)));
-        }
-      }
+      for_each_column(submap,
+                      [&cells](std::int32_t x, std::int32_t y, const Block&) { cells.emplace_back(x, y); });
       // Heights of one submap repeat its columns: what is known twice is dropped before it grows.
       if (cells.size() > 1'000'000) {
         std::sort(cells.begin(), cells.end());

@@ -32,7 +32,8 @@ struct ChunkStoreParams {
 /// the station are forgotten; what does not fit then is refused and counted.
 ///
 /// Other robots may carry a robot's map here. What they bring is taken if it is newer, and replaced by
-/// whatever the robot itself sends later; it makes no room for itself.
+/// whatever the robot itself sends later; it makes no room for itself, and replaces nothing that a robot sent
+/// that is heard now.
 class ChunkStore {
  public:
   struct Block {
@@ -85,8 +86,12 @@ class ChunkStore {
   /// All poses must be of one robot, and at least one.
   Result<std::size_t> take_carried(const std::string& carrier, const perception::SubmapPoses& poses,
                                    std::size_t bytes, std::optional<Time> now);
+  /// Notes how many parts a robot has still to send, if anything came from it.
+  void note_waiting(const std::string& robot, std::uint32_t waiting);
   /// Age of a block by the clock of this station; nothing: unknown.
   std::optional<Duration> age(const Block& block, Time now) const;
+  /// The time as Block::received has it; 0 before the first piece.
+  std::uint32_t clock(Time now) const;
 
   /// Forgets everything.
   void clear();

@@ -43,7 +43,7 @@ Result<void> MapReceiver::restore(const std::string& robot, std::uint8_t kind,
                                   std::span<const std::uint8_t> data) {
   if (transfer::is_carried(kind)) {
     // The robot that it is of does not count on it, so what does not fit is no loss.
-    const auto carried = take_carried(robot, kind, data, std::nullopt);
+    const auto carried = take_carried(robot, kind, 0, data, std::nullopt);
     if (!carried && carried.reason() != Reason::queue_full) return carried.error();
     return {};
   }
@@ -52,8 +52,9 @@ Result<void> MapReceiver::restore(const std::string& robot, std::uint8_t kind,
   return store(robot, kind, data);
 }
 
-Result<bool> MapReceiver::take_carried(const std::string& carrier, std::uint8_t kind,
+Result<bool> MapReceiver::take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
                                        std::span<const std::uint8_t> data, std::optional<Time> now) {
+  chunks_.note_waiting(carrier, waiting);
   const auto refuse = [this](const Error& error) {
     ++refused_;
     return error;

@@ -85,7 +85,7 @@ std::string MapReplica::load() {
 
 Result<void> MapReplica::take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
                               std::span<const std::uint8_t> data, std::function<void()> stored) {
-  if (transfer::is_carried(kind)) return take_carried(robot, kind, data, std::move(stored));
+  if (transfer::is_carried(kind)) return take_carried(robot, kind, waiting, data, std::move(stored));
   const Result<void> taken = receiver_.take(robot, kind, waiting, data, home_.now());
   if (taken)
     journal_.add({robot, kind, {data.begin(), data.end()}}, std::move(stored));
@@ -99,9 +99,9 @@ Result<void> MapReplica::take(const std::string& robot, std::uint8_t kind, std::
   return taken;
 }
 
-Result<void> MapReplica::take_carried(const std::string& carrier, std::uint8_t kind,
+Result<void> MapReplica::take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
                                       std::span<const std::uint8_t> data, std::function<void()> stored) {
-  const Result<bool> newer = receiver_.take_carried(carrier, kind, data, home_.now());
+  const Result<bool> newer = receiver_.take_carried(carrier, kind, waiting, data, home_.now());
   if (newer && *newer)
     journal_.add({carrier, kind, {data.begin(), data.end()}}, std::move(stored));
   else if (newer || newer.reason() != Reason::malformed)

@@ -32,8 +32,8 @@ class MapReplica {
   const MapReceiver& receiver() const { return receiver_; }
 
  private:
-  Result<void> take_carried(const std::string& carrier, std::uint8_t kind, std::span<const std::uint8_t> data,
-                            std::function<void()> stored);
+  Result<void> take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
+                            std::span<const std::uint8_t> data, std::function<void()> stored);
 
   Executor& home_;
   std::uint32_t start_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/map/status.hpp"
 
+#include "basestation/map/area_ages.hpp"
 #include "basestation/report/table.hpp"
 
 namespace adit::station {
@@ -64,6 +65,11 @@ std::string map_status_text(const MapReceiver& map, Time now) {
       out += name + ": the place of " + std::to_string(missing) + " submaps has not arrived yet\n";
   for (const auto& [name, robot] : chunks.robots()) out += carried_text(name, robot, now);
   out += "all: " + fixed(chunks.area(), 0) + " m2";
+  const AreaAges ages = area_ages(chunks, now);
+  out += ", received within 10 s: " + fixed(100.0 * ages.within_10s, 0) +
+         " %, 1 min: " + fixed(100.0 * ages.within_1min, 0) +
+         " %, 10 min: " + fixed(100.0 * ages.within_10min, 0) +
+         " %, before the station's start: " + fixed(100.0 * ages.unknown, 0) + " %";
   if (map.refused() > 0) out += ", " + std::to_string(map.refused()) + " pieces refused";
   if (chunks.refused() > 0) out += ", " + std::to_string(chunks.refused()) + " parts without room";
   if (chunks.refused_carried() > 0)
@@ -87,8 +93,14 @@ nlohmann::json map_status_json(const MapReceiver& map, Time now) {
                       {"waiting", robot.waiting},
                       {"carried_blocks", robot.carried_blocks},
                       {"carried", carried_json(robot, now)}});
+  const AreaAges ages = area_ages(chunks, now);
   return {{"robots", robots},
           {"m2", chunks.area()},
+          {"share_by_age",
+           {{"within_10s", ages.within_10s},
+            {"within_1min", ages.within_1min},
+            {"within_10min", ages.within_10min},
+            {"unknown", ages.unknown}}},
           {"refused_pieces", map.refused()},
           {"refused_parts", chunks.refused()},
           {"refused_carried_parts", chunks.refused_carried()}};

@@ -79,6 +79,9 @@ TEST_F(CarriedMapTest, DirectAndCarriedPartsMergeByRevision) {
   ASSERT_TRUE(take("r2", transfer::Kind::carried_blocks, carried_blocks_of("r1", 0, 0xf, 4)).ok());
   EXPECT_EQ(known("r1", 0), 0xffU) << "older";
   ASSERT_TRUE(take("r2", transfer::Kind::carried_blocks, carried_blocks_of("r1", 1, 0xfff, 6)).ok());
+  EXPECT_EQ(known("r1", 1), 0xffU) << "r1 is heard, and sends what is newer itself";
+  run(10s);
+  ASSERT_TRUE(take("r2", transfer::Kind::carried_blocks, carried_blocks_of("r1", 1, 0xfff, 6)).ok());
   EXPECT_EQ(known("r1", 1), 0xfffU) << "newer";
   EXPECT_EQ(robot("r1").carried_blocks, 1U);
 }
@@ -144,11 +147,11 @@ TEST_F(CarriedMapTest, StaysBoundedAndTakesNoRoomFromRobotsThatAreHeard) {
   };
   ASSERT_TRUE(store.count("r1", 10, 0, Time{1s}));
   ASSERT_TRUE(store.take("r1", piece("r1", 0, 50)));
-  EXPECT_EQ(store.take_carried("bad", piece("a", 0, 30), 10, Time{1s}).value(), 30U);
-  EXPECT_EQ(store.take_carried("bad", piece("b", 0, 30), 10, Time{1s}).reason(), Reason::queue_full);
-  EXPECT_EQ(store.take_carried("bad", piece("c", 0, 1), 10, Time{1s}).reason(), Reason::queue_full);
+  EXPECT_EQ(store.take_carried("bad", piece("a", 0, 30), 10, Time{60s}).value(), 30U);
+  EXPECT_EQ(store.take_carried("bad", piece("b", 0, 30), 10, Time{60s}).reason(), Reason::queue_full);
+  EXPECT_EQ(store.take_carried("bad", piece("c", 0, 1), 10, Time{60s}).reason(), Reason::queue_full);
   EXPECT_FALSE(store.robots().contains("c"));
-  EXPECT_EQ(store.take_carried("bad", piece("r1", 0, 50, 9), 10, Time{1s}).reason(), Reason::queue_full);
+  EXPECT_EQ(store.take_carried("bad", piece("r1", 0, 50, 9), 10, Time{60s}).reason(), Reason::queue_full);
   EXPECT_EQ(store.robots().at("r1").carried_blocks, 0U);
   EXPECT_EQ(store.robots().at("a").blocks + store.robots().at("b").blocks, 40U);
   EXPECT_EQ(store.refused_carried(), 71U);
@@ -161,7 +164,7 @@ TEST_F(CarriedMapTest, StaysBoundedAndTakesNoRoomFromRobotsThatAreHeard) {
   EXPECT_EQ(store.robots().at("r1").blocks, 100U);
   EXPECT_FALSE(store.robots().contains("a"));
   EXPECT_EQ(store.evicted(), 0U) << "no robot counts on that";
-  EXPECT_EQ(store.take_carried("bad", piece("d", 0, 1), 10, Time{1s}).reason(), Reason::queue_full);
+  EXPECT_EQ(store.take_carried("bad", piece("d", 0, 1), 10, Time{60s}).reason(), Reason::queue_full);
   EXPECT_EQ(store.robots().at("r1").blocks, 100U);
 }
 
@@ -207,6 +210,15 @@ TEST_F(CarriedMapTest, APieceWithNothingNewIsAcknowledgedAndTakesNoSpaceOnTheDis
   EXPECT_EQ(disk->read(MapJournal::kFile, 1U << 20U).value()->size(), bytes);
 }
 
+TEST_F(CarriedMapTest, WhatACarrierHasStillToSendIsItsNewestWord) {
+  const auto own = carried_blocks_of("r2", 0, kFull, 1, 10);
+  ASSERT_TRUE(replica->take("r2", 1, 500, own, [] {}).ok());
+  EXPECT_EQ(robot("r2").waiting, 500U);
+  ASSERT_TRUE(replica->take("r2", 4, 7, carried_blocks_of("r1", 0, kFull, 1, 10), [] {}).ok());
+  EXPECT_EQ(robot("r2").waiting, 7U);
+  EXPECT_EQ(robot("r1").waiting, 0U);
+}
+
 TEST_F(CarriedMapTest, ABlockKnowsWhenItCame) {
   run(3s);
   ASSERT_TRUE(take("r1", transfer::Kind::map_blocks, carried_blocks_of("r1", 0, kFull, 3)).ok());
@@ -215,6 +227,27 @@ TEST_F(CarriedMapTest, ABlockKnowsWhenItCame) {
   const auto& blocks = robot("r1").submaps.begin()->second.blocks;
   EXPECT_EQ(replica->chunks().age(blocks.at({0, 0, 0}), strand->now()), Duration(20s));
   EXPECT_EQ(replica->chunks().age(blocks.at({1, 0, 0}), strand->now()), Duration{});
+}
+
+TEST_F(CarriedMapTest, StatusSaysWhichShareOfTheAreaIsHowOld) {
+  ASSERT_TRUE(take("r1", transfer::Kind::map_poses, carried_pose_of("r1", 0, 1)).ok());
+  ASSERT_TRUE(take("r1", transfer::Kind::map_blocks, carried_blocks_of("r1", 0, kFull, 3, 4)).ok());
+  run(1s);
+  ASSERT_EQ(restart(), "");
+  const auto shares = [this] { return map_status_json(replica->receiver(), strand->now())["share_by_age"]; };
+  EXPECT_EQ(shares()["unknown"], 1.0) << "it is from the disk";
+  ASSERT_TRUE(take("r1", transfer::Kind::map_blocks, carried_blocks_of("r1", 0, kFull, 4, 2)).ok());
+  run(40s);
+  ASSERT_TRUE(take("r2", transfer::Kind::carried_blocks, carried_blocks_of("r1", 0, kFull, 5, 1)).ok());
+  EXPECT_EQ(shares()["within_10s"], 0.25);
+  EXPECT_EQ(shares()["within_1min"], 0.5);
+  EXPECT_EQ(shares()["within_10min"], 0.5);
+  EXPECT_EQ(shares()["unknown"], 0.5);
+  run(700s);
+  EXPECT_EQ(shares()["within_10min"], 0.0);
+  EXPECT_THAT(
+      map_status_text(replica->receiver(), strand->now()),
+      HasSubstr("received within 10 s: 0 %, 1 min: 0 %, 10 min: 0 %, before the station's start: 50 %"));
 }
 
 TEST(DigestList, ListsAFewInTurnAndSaysWhenThatIsAll) {
