@@ -10,7 +10,7 @@ std::vector<MapPart> parts_of(const ChunkStore& chunks, const std::string& robot
     const std::size_t before = out.size();
     for (const auto& [key, submap] : from.submaps) {
       if (!submap.T_map_submap || submap.blocks.empty()) continue;
-      MapPart part{*submap.T_map_submap, {}, {}, false};
+      MapPart part{*submap.T_map_submap, {}, false};
       part.blocks.reserve(submap.blocks.size());
       part.received.reserve(submap.blocks.size());
       for (const auto& [index, block] : submap.blocks) {

@@ -164,6 +164,7 @@ TEST_F(CarryTest, TheMapOfARobotThatNeverReachesTheStationComesThroughAnother) {
   EXPECT_EQ(robot.carried_blocks, robot.blocks);
   EXPECT_THAT(robot.carriers, testing::ElementsAre(testing::Key("r2")));
   EXPECT_FALSE(robot.heard);
+  for (const auto& [key, submap] : robot.submaps) EXPECT_TRUE(submap.T_map_submap) << key.index;
 }
 
 TEST_F(CarryTest, WhatTheStationHasIsNotCarried) {

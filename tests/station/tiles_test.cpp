@@ -138,8 +138,7 @@ TEST(Tiles, ARegionHasTheAgeOfItsNewestBlock) {
   VoxelImage map(kEdge);
   for (const int x : {0, 10, 127, -1}) map.set({x, 1, 0}, Voxel::free);
   std::vector<MapTile> tiles = tiles_of(map);
-  MapPart part{
-      Pose3{}, {{{0, 0, 0}, 1, 0}, {{0, 0, 1}, 1, 0}, {{31, 0, 0}, 1, 0}, {{-1, 0, 0}, 1, 0}}, {}, true};
+  MapPart part{Pose3{}, {{{0, 0, 0}, 1, 0}, {{0, 0, 1}, 1, 0}, {{31, 0, 0}, 1, 0}, {{-1, 0, 0}, 1, 0}}, true};
   part.received = {41, 101, 0, 201};
   add_received(tiles, {part}, kEdge);
   Tiles view;
