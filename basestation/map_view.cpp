@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "basestation/map/merged_map.hpp"
+#include "basestation/map/tile_ages.hpp"
 #include "basestation/station_impl.hpp"
 
 namespace adit::station {
@@ -30,7 +31,9 @@ void Station::Impl::map_since(std::uint64_t revision, std::size_t most, MapDone 
   strand_.compute(
       {.name = "map view", .modelled = kModelledView, .watchdog = std::chrono::seconds(60)},
       [parts = parts_of(map_.chunks()), prior = prior_] {
-        return tiles_of(merged(parts, prior.get(), kViewResolution));
+        std::vector<MapTile> tiles = tiles_of(merged(parts, prior.get(), kViewResolution));
+        add_received(tiles, parts, kViewResolution);
+        return tiles;
       },
       [this, alive = std::weak_ptr(alive_)](Result<std::vector<MapTile>> tiles) {
         if (alive.expired()) return;
@@ -45,6 +48,7 @@ void Station::Impl::map_since(std::uint64_t revision, std::size_t most, MapDone 
 
 void Station::Impl::answer_tiles(std::uint64_t revision, std::size_t most, const MapDone& done) const {
   MapUpdate update = view_.tiles.since(revision, most);
+  update.clock = tile_clock(map_.chunks().clock(strand_.now()));
   const bool more = update.revision < view_.tiles.revision();
   done(std::move(update), more);
 }

@@ -2,6 +2,7 @@
 #include "basestation/station.hpp"
 #include "basestation/content/convert.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "adit/authority.h"
@@ -26,6 +27,7 @@ constexpr Duration kReportPeriod = 2s;
 constexpr Duration kTickPeriod = 100ms;
 constexpr Duration kChanges = 20ms;  // Changes within it are reported together.
 constexpr std::size_t kMaxReportTopics = 16;
+constexpr Duration kCarrierHeard = 30s;
 constexpr Duration kLookHolds = 5s;      // Front ends say every second what they show.
 constexpr std::uint64_t kStartSalt = 1;  // Beside the sequence of the phases.
 }  // namespace
@@ -185,7 +187,8 @@ void Station::Impl::heard_piece(const radio::BulkPiece& sample, const wire::Samp
 void Station::Impl::acknowledge_pieces() {
   if (closed_ || !params_.content || fleet_.robots().empty()) return;
   const wire::LinkProfile* link = radio_.sender().link;
-  const auto receipts = pieces_.due(link ? link->bandwidth : 0.0);
+  const double bandwidth = link ? link->bandwidth : 0.0;
+  const auto receipts = pieces_.due(bandwidth);
   if (!receipts) return;
   radio::BulkAck ack;
   ack.station(params_.name);
@@ -194,7 +197,23 @@ void Station::Impl::acknowledge_pieces() {
   for (const auto& [robot, receipt] : *receipts) ack.receipts().push_back(to_radio(robot, receipt));
   if (look_ && strand_.now() - looked_ < kLookHolds)
     ack.look({static_cast<float>(look_->x), static_cast<float>(look_->y), static_cast<float>(look_->radius)});
+  if (const auto digests = carrier_heard()
+                               ? digests_.due(map_.chunks(), receipts->size(), bandwidth, strand_.now())
+                               : std::nullopt) {
+    ack.all_digests(digests->all);
+    for (const transfer::ContentDigest& digest : digests->list) ack.digests().push_back(to_radio(digest));
+  }
   (void)topics_->bulk_ack.write(ack);  // Best effort: a receipt has what those before it had.
+}
+
+bool Station::Impl::carrier_heard() const {
+  const auto& robots = fleet_.robots();
+  return std::any_of(robots.begin(), robots.end(), [this](const auto& entry) {
+    const RobotView& robot = entry.second;
+    return strand_.now() - robot.last_heard < kCarrierHeard &&
+           std::find(robot.services.begin(), robot.services.end(), wire::topics::kCarryService) !=
+               robot.services.end();
+  });
 }
 
 std::uint32_t Station::Impl::drawn_start() {

@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "basestation/content/digest_list.hpp"
 #include "basestation/content/piece_reader.hpp"
 #include "basestation/findings/book.hpp"
 #include "basestation/findings/desk.hpp"
@@ -88,6 +89,8 @@ class Station::Impl {
   Result<void> open_content();
   void heard_piece(const radio::BulkPiece& sample, const wire::SampleInfo& info);
   void acknowledge_pieces();
+  /// Whether a robot is heard that carries maps.
+  bool carrier_heard() const;
   void heard_acknowledgement(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
 
   // Defined in execute.cpp: command lines.
@@ -140,6 +143,7 @@ class Station::Impl {
   PieceReader pieces_;  ///< Of all kinds of content.
   FindingDesk desk_;
   MapReplica map_;
+  DigestList digests_{};
   Trails trails_{};
   std::shared_ptr<const perception::VoxelImage> prior_{};  ///< What the crew had; null: nothing.
   /// The map seen from above, for front ends.

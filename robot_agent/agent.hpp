@@ -60,6 +60,7 @@ struct AgentParams {
       true};  ///< An autonomous mode resumes after a restart; false: the robot holds, and its goal is stored.
   VelocityType velocity{};  ///< Message type of the driver's /cmd_vel.
   SafeguardParams safeguards{};
+  bool carry_maps{false};     ///< Carries maps of other robots on to stations.
   std::size_t findings{512};  ///< Maximum number of stored findings, [1, 65536].
   SupervisionParams supervision{};
   /// Requests a restart of the agent's process, because a component could not be restarted. Called once, on a

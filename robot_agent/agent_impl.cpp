@@ -184,8 +184,9 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
     if ((unit != &router || routes_it) && (unit != &map || maps_it))
       if (const auto opened = unit->open(); !opened) return opened.error();
   if (maps_it) open_map();
+  if (params.carry_maps) e.carrier = std::make_unique<Carrier>(Random(params.seed).fork(kCarrySalt).next());
   e.content = std::make_unique<ContentSender>(Random(params.seed).fork(kContentSalt).next(), *e.findings,
-                                              e.map.get());
+                                              e.map.get(), e.carrier.get());
   if (routes_it) e.router = std::make_unique<RouteServices>();
   auto opened = AgentSupervisor::open({params.name, params.supervision, Log(params.log, params.name),
                                        params.end, params.alive, params.velocity},
@@ -222,6 +223,10 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
        },
        [&e, &strand, with_command](const std::string& station, const transfer::Ack& ack,
                                    const wire::ParticipantId& from) {
+         if (ack.carrier) {
+           if (e.peers.is_robot(station, from)) e.content->acknowledged(ack, strand.now());
+           return;
+         }
          with_command([&](CommandComponent& component) {
            component.commands([&](CommandInterface& interface) {
              // Only the participant that is bound to the station speaks for it.
@@ -230,7 +235,17 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
                e.content->acknowledged(ack, strand.now());
            });
          });
-       }});
+       },
+       pieces_to_carry()});
+}
+
+std::function<void(const PieceToCarry&, const wire::ParticipantId&)> Agent::Impl::pieces_to_carry() {
+  if (!context->carrier) return {};
+  return [this](const PieceToCarry& piece, const wire::ParticipantId& from) {
+    // Only the robot itself says what its map is.
+    if (context->peers.is_robot(piece.robot, from))
+      (void)context->carrier->take(piece, command_strand().now());
+  };
 }
 
 void Agent::Impl::open_map() {

@@ -12,6 +12,7 @@ inline constexpr std::uint64_t kIdentitySalt = 1;
 inline constexpr std::uint64_t kFindingsSalt = 2;
 inline constexpr std::uint64_t kMapSalt = 3;
 inline constexpr std::uint64_t kContentSalt = 4;
+inline constexpr std::uint64_t kCarrySalt = 5;
 
 /// The implementation of Agent: its units, each on a strand of its own, their shared context, and the
 /// supervisor. Private to agent.cpp.
@@ -46,6 +47,7 @@ struct Agent::Impl {
   StateKeeper::Outputs keeper_outputs();
   std::shared_ptr<const nav::PlannerLibrary> library();
   FindingSource::Outputs findings_outputs();
+  std::function<void(const PieceToCarry&, const wire::ParticipantId&)> pieces_to_carry();
   UnitParams command_unit();
   UnitParams planner_unit();
   UnitParams router_unit();

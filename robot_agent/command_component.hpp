@@ -67,7 +67,8 @@ struct Agent::Context {
   std::uint32_t odometries{};  ///< Instances of the odometry so far; by the sensors component only.
   FrameServices frames{};
   std::unique_ptr<MapKeeper> map{};          ///< Null: this robot makes no map.
-  std::unique_ptr<ContentSender> content{};  ///< Of the findings and the map.
+  std::unique_ptr<Carrier> carrier{};        ///< Null: this robot carries no maps.
+  std::unique_ptr<ContentSender> content{};  ///< Of the findings and the maps.
   MapService map_insertion{"map insertion", 2};
   AgentSupervisor* watch{};               ///< From any thread.
   CommandComponent* command_component{};  ///< Null while the command component is not running.
@@ -144,7 +145,7 @@ class Agent::CommandComponent : public Component {
   void watch_namesakes(Time at);
   /// Offers a scan to the map, in the odometry frame.
   void add_to_map(const std::shared_ptr<const Scan>& scan);
-  /// Sends findings and map to the stations, as the link allows.
+  /// Sends findings and maps to the stations, or its map to carriers, as the link allows.
   void send_content();
   /// Sends this robot's state to the other robots, when the link allows.
   void send_beacon(Time at);

@@ -15,4 +15,11 @@ inline radio::BulkReceipt to_radio(const std::string& robot, const transfer::Rec
   return out;
 }
 
+inline radio::BulkDigest to_radio(const transfer::ContentDigest& digest) {
+  radio::BulkDigest out;
+  out.robot(digest.robot);
+  out.parts(digest.parts);
+  return out;
+}
+
 }  // namespace adit::station

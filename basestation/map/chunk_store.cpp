@@ -2,12 +2,12 @@
 #include "basestation/map/chunk_store.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "basestation/map/ground_columns.hpp"
 
 namespace adit::station {
 namespace {
 
-using perception::BlockIndex;
 using perception::CoarseBlock;
 
 }  // namespace
@@ -33,7 +33,7 @@ std::optional<CoarseBlock> ChunkStore::find(const perception::SubmapKey& key, co
 
 void ChunkStore::clear() {
   robots_.clear();
-  blocks_ = 0;
+  blocks_ = carried_blocks_ = 0;
   evicted_ = 0;
   ++revision_;
 }
@@ -44,9 +44,10 @@ bool ChunkStore::make_room(const std::string& robot) {
   for (auto it = robots_.begin(); it != robots_.end(); ++it) {
     if (it->second.heard || it->first == robot) continue;
     blocks_ -= it->second.blocks;
+    carried_blocks_ -= it->second.carried_blocks;
+    evicted_ += it->second.pieces > 0 ? 1 : 0;  // The robot itself does not count on what was carried.
     robots_.erase(it);
     ++revision_;
-    ++evicted_;
     return true;
   }
   return false;
@@ -61,6 +62,7 @@ bool ChunkStore::count(const std::string& robot, std::size_t bytes, std::uint32_
   ++from.pieces;
   from.waiting = waiting;
   from.heard = now;
+  set_now(now);
   return true;
 }
 
@@ -81,13 +83,10 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
         complete = false;
         continue;
       }
-      ++blocks_;
-      ++robots_.at(robot).blocks;
-    } else if (update.revision <= known->second.revision) {
+    } else if (update.revision <= known->second.revision && known->second.carried == 0) {
       continue;
     }
-    ++revision_;
-    into->blocks[update.block.index] = {update.block.known, update.block.occupied, update.revision};
+    put(robots_.at(robot), *into, piece.key, update, false);
   }
   return complete;
 }
@@ -99,10 +98,8 @@ bool ChunkStore::take(const std::string& robot, const perception::SubmapPoses& p
     if (into == nullptr) {
       ++refused_;
       complete = false;
-    } else if (!into->T_map_submap || pose.revision > into->pose_revision) {
-      into->T_map_submap = pose.T_map_submap;
-      into->pose_revision = pose.revision;
-      ++revision_;
+    } else if (!into->T_map_submap || pose.revision > into->pose_revision || into->pose_carried) {
+      put(robots_.at(robot), *into, pose, false);
     }
   }
   return complete;
@@ -114,19 +111,8 @@ double ChunkStore::area(const std::string& robot) const {
   for (const auto& [name, from] : robots_) {
     if (!robot.empty() && name != robot) continue;
     for (const auto& [key, submap] : from.submaps) {
-      if (!submap.T_map_submap) continue;
-      for (const auto& [index, block] : submap.blocks) {
-        std::uint64_t columns = block.known;
-        columns = (columns | columns >> 32 | columns >> 16 | columns >> 48) & 0xffff;
-        for (int column = 0; column < 16; ++column) {
-          if ((columns >> column & 1) == 0) continue;
-          const Eigen::Vector3d centre((index.x * 4 + column % 4 + 0.5) * kCell,
-                                       (index.y * 4 + column / 4 + 0.5) * kCell, (index.z * 4 + 2) * kCell);
-          const Eigen::Vector3d at = *submap.T_map_submap * centre;
-          cells.emplace_back(static_cast<std::int32_t>(std::floor(at.x() / kCell)),
-                             static_cast<std::int32_t>(std::floor(at.y() / kCell)));
-        }
-      }
+      for_each_column(submap,
+                      [&cells](std::int32_t x, std::int32_t y, const Block&) { cells.emplace_back(x, y); });
       // Heights of one submap repeat its columns: what is known twice is dropped before it grows.
       if (cells.size() > 1'000'000) {
         std::sort(cells.begin(), cells.end());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/map/map_receiver.hpp"
 
+#include "core/command/words.hpp"
 #include "core/transfer/piece.hpp"
 
 namespace adit::station {
@@ -42,9 +43,44 @@ Result<void> MapReceiver::take(const std::string& robot, std::uint8_t kind, std:
 
 Result<void> MapReceiver::restore(const std::string& robot, std::uint8_t kind,
                                   std::span<const std::uint8_t> data) {
+  if (transfer::is_carried(kind)) {
+    // The robot that it is of does not count on it, so what does not fit is no loss.
+    const auto carried = take_carried(robot, kind, 0, data, std::nullopt);
+    if (!carried && carried.reason() != Reason::queue_full) return carried.error();
+    return {};
+  }
   if (!chunks_.count(robot, data.size(), 0, std::nullopt))
     return {Reason::queue_full, "no room for one more robot's map"};
   return store(robot, kind, data);
+}
+
+Result<bool> MapReceiver::take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
+                                       std::span<const std::uint8_t> data, std::optional<Time> now) {
+  chunks_.note_waiting(carrier, waiting);
+  const auto refuse = [this](const Error& error) {
+    ++refused_;
+    return error;
+  };
+  if (data.size() > transfer::kMaxPieceBytes)
+    return refuse({Reason::malformed, "a piece is longer than any robot sends"});
+  Result<std::size_t> newer = std::size_t{0};
+  if (kind == static_cast<std::uint8_t>(transfer::Kind::carried_blocks)) {
+    const auto piece = perception::decode(data);
+    if (!piece) return refuse(piece.error());
+    if (piece->key.robot == carrier || !command::valid_name(piece->key.robot))
+      return refuse({Reason::malformed, "a carried piece that names no other robot"});
+    newer = chunks_.take_carried(carrier, *piece, data.size(), now);
+  } else {
+    const auto poses = perception::decode_poses(data);
+    if (!poses) return refuse(poses.error());
+    for (const perception::SubmapPose& pose : poses->poses)
+      if (pose.key.robot == carrier || pose.key.robot != poses->poses.front().key.robot ||
+          !command::valid_name(pose.key.robot))
+        return refuse({Reason::malformed, "carried poses that name no other robot, or several"});
+    if (!poses->poses.empty()) newer = chunks_.take_carried(carrier, *poses, data.size(), now);
+  }
+  if (!newer) return refuse(newer.error());
+  return *newer > 0;
 }
 
 }  // namespace adit::station

@@ -19,6 +19,11 @@ class MapReceiver {
   Result<void> take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
                     std::span<const std::uint8_t> data, Time now);
 
+  /// Takes a piece of another robot's map than the sender's (transfer::is_carried). Returns whether anything
+  /// of it was newer. Errors as take(); malformed also for a map of the sender.
+  Result<bool> take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
+                            std::span<const std::uint8_t> data, std::optional<Time> now);
+
   /// Takes a piece of the disk, from before this start of the station. Errors as take().
   Result<void> restore(const std::string& robot, std::uint8_t kind, std::span<const std::uint8_t> data);
 

@@ -15,33 +15,48 @@ namespace {
 constexpr std::size_t kLongFile = std::size_t{512} << 10;
 constexpr std::size_t kBytesOfBlock = 10;
 
+/// What the robot itself sent of its map, or what carriers did.
+void add_pieces(const std::string& name, const ChunkStore::Robot& robot, bool carried,
+                std::vector<JournalPiece>& out) {
+  const auto latest =
+      std::max_element(robot.carriers.begin(), robot.carriers.end(),
+                       [](const auto& a, const auto& b) { return a.second.last < b.second.last; });
+  if (carried && latest == robot.carriers.end()) return;
+  const std::string& sender = carried ? latest->first : name;
+  const auto add = [&](transfer::Kind direct, transfer::Kind kind, std::vector<std::uint8_t> bytes) {
+    out.push_back({sender, static_cast<std::uint8_t>(carried ? kind : direct), std::move(bytes)});
+  };
+  perception::SubmapPoses poses;
+  const auto add_poses = [&] {
+    if (poses.poses.empty()) return;
+    add(transfer::Kind::map_poses, transfer::Kind::carried_poses, perception::encode(poses));
+    poses.poses.clear();
+  };
+  for (const auto& [key, submap] : robot.submaps) {
+    if (submap.T_map_submap && submap.pose_carried == carried)
+      poses.poses.push_back({key, *submap.T_map_submap, submap.pose_revision});
+    if (poses.poses.size() == perception::kMaxPiecePoses) add_poses();
+    std::vector<perception::BlockUpdate> blocks;
+    for (const auto& [index, block] : submap.blocks)
+      if ((block.carried != 0) == carried)
+        blocks.push_back({{index, block.known, block.occupied}, block.revision});
+    for (std::span<const perception::BlockUpdate> left(blocks); !left.empty();) {
+      auto packed = perception::pack(key, left.first(std::min(left.size(), perception::kMaxPieceBlocks)),
+                                     transfer::kMaxPieceBytes);
+      if (packed.count == 0) break;
+      left = left.subspan(packed.count);
+      add(transfer::Kind::map_blocks, transfer::Kind::carried_blocks, std::move(packed.bytes));
+    }
+  }
+  add_poses();
+}
+
 }  // namespace
 
 std::vector<JournalPiece> pieces_of(const ChunkStore& chunks) {
   std::vector<JournalPiece> out;
-  for (const auto& [name, robot] : chunks.robots()) {
-    perception::SubmapPoses poses;
-    const auto add_poses = [&, &name = name] {
-      if (poses.poses.empty()) return;
-      out.push_back({name, static_cast<std::uint8_t>(transfer::Kind::map_poses), perception::encode(poses)});
-      poses.poses.clear();
-    };
-    for (const auto& [key, submap] : robot.submaps) {
-      if (submap.T_map_submap) poses.poses.push_back({key, *submap.T_map_submap, submap.pose_revision});
-      if (poses.poses.size() == perception::kMaxPiecePoses) add_poses();
-      std::vector<perception::BlockUpdate> blocks;
-      for (const auto& [index, block] : submap.blocks)
-        blocks.push_back({{index, block.known, block.occupied}, block.revision});
-      for (std::span<const perception::BlockUpdate> left(blocks); !left.empty();) {
-        auto packed = perception::pack(key, left.first(std::min(left.size(), perception::kMaxPieceBlocks)),
-                                       transfer::kMaxPieceBytes);
-        if (packed.count == 0) break;
-        left = left.subspan(packed.count);
-        out.push_back({name, static_cast<std::uint8_t>(transfer::Kind::map_blocks), std::move(packed.bytes)});
-      }
-    }
-    add_poses();
-  }
+  for (const auto& [name, robot] : chunks.robots())
+    for (const bool carried : {false, true}) add_pieces(name, robot, carried, out);
   return out;
 }
 
@@ -74,6 +89,7 @@ std::string MapReplica::load() {
 
 Result<void> MapReplica::take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
                               std::span<const std::uint8_t> data, std::function<void()> stored) {
+  if (transfer::is_carried(kind)) return take_carried(robot, kind, waiting, data, std::move(stored));
   const Result<void> taken = receiver_.take(robot, kind, waiting, data, home_.now());
   if (chunks().evicted() != evicted_) forget_evicted();
   if (taken) {
@@ -95,6 +111,17 @@ void MapReplica::forget_evicted() {
     journal_.forget(name);
     return true;
   });
+}
+
+Result<void> MapReplica::take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
+                                      std::span<const std::uint8_t> data, std::function<void()> stored) {
+  const Result<bool> newer = receiver_.take_carried(carrier, kind, waiting, data, home_.now());
+  if (newer && *newer)
+    journal_.add({carrier, kind, {data.begin(), data.end()}}, std::move(stored));
+  else if (newer || newer.reason() != Reason::malformed)
+    stored();  // It is here already, or would come again without end.
+  if (!newer) return newer.error();
+  return {};
 }
 
 void MapReplica::forget(std::uint32_t start) {

@@ -22,7 +22,8 @@ class MapReplica {
   /// The start of this station as robots should know it (transfer::Ack): the one before if nothing is missing
   /// of what was acknowledged then.
   std::uint32_t start() const { return start_; }
-  /// Takes one piece, see MapReceiver::take. `stored` is called when it should be acknowledged.
+  /// Takes one piece, see MapReceiver::take and take_carried. `stored` is called when it should be
+  /// acknowledged.
   Result<void> take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
                     std::span<const std::uint8_t> data, std::function<void()> stored);
   /// Forgets all maps. Robots that are heard send theirs again, to the start that is given.
@@ -33,6 +34,8 @@ class MapReplica {
 
  private:
   void forget_evicted();
+  Result<void> take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
+                            std::span<const std::uint8_t> data, std::function<void()> stored);
 
   Executor& home_;
   std::uint32_t start_;

@@ -12,8 +12,11 @@ std::vector<MapPart> parts_of(const ChunkStore& chunks, const std::string& robot
       if (!submap.T_map_submap || submap.blocks.empty()) continue;
       MapPart part{*submap.T_map_submap, {}, false};
       part.blocks.reserve(submap.blocks.size());
-      for (const auto& [index, block] : submap.blocks)
+      part.received.reserve(submap.blocks.size());
+      for (const auto& [index, block] : submap.blocks) {
         part.blocks.push_back({index, block.known, block.occupied});
+        part.received.push_back(block.received);
+      }
       out.push_back(std::move(part));
     }
     if (out.size() > before) out.back().newest = true;

@@ -12,7 +12,8 @@ namespace adit::station {
 struct MapPart {
   Pose3 T_map_submap{};
   std::vector<perception::CoarseBlock> blocks{};
-  bool newest{};  ///< Of its robot.
+  bool newest{};                          ///< Of its robot.
+  std::vector<std::uint32_t> received{};  ///< Of each block, as ChunkStore::Block.
 };
 
 /// The submaps of that robot, or of all, whose pose is known; of each robot the oldest first.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/map/status.hpp"
 
+#include "basestation/map/area_ages.hpp"
 #include "basestation/report/table.hpp"
 
 namespace adit::station {
@@ -17,6 +18,29 @@ std::size_t waiting_for_pose(const ChunkStore::Robot& robot) {
 double share(const ChunkStore::Robot& robot) {
   const auto here = static_cast<double>(robot.blocks);
   return here > 0.0 ? here / (here + static_cast<double>(robot.waiting)) : 0.0;
+}
+
+/// Who carried parts of this robot's map here; empty: no robot did.
+std::string carried_text(const std::string& name, const ChunkStore::Robot& robot, Time now) {
+  std::string by;
+  for (const auto& [carrier, carried] : robot.carriers)
+    by += (by.empty() ? "" : ", ") + carrier +
+          (carried.heard ? " (" + short_age(seconds(now - *carried.heard)) + " ago)" : "");
+  if (by.empty()) return {};
+  return name + ": carried by " + by + "; " + std::to_string(robot.carried_blocks) + " of " +
+         std::to_string(robot.blocks) + " blocks came so\n";
+}
+
+nlohmann::json carried_json(const ChunkStore::Robot& robot, Time now) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const auto& [carrier, carried] : robot.carriers)
+    out.push_back(
+        {{"by", carrier},
+         {"bytes", carried.bytes},
+         {"pieces", carried.pieces},
+         {"parts", carried.parts},
+         {"age", carried.heard ? nlohmann::json(seconds(now - *carried.heard)) : nlohmann::json()}});
+  return out;
 }
 
 }  // namespace
@@ -39,9 +63,17 @@ std::string map_status_text(const MapReceiver& map, Time now) {
   for (const auto& [name, robot] : chunks.robots())
     if (const std::size_t missing = waiting_for_pose(robot); missing > 0)
       out += name + ": the place of " + std::to_string(missing) + " submaps has not arrived yet\n";
+  for (const auto& [name, robot] : chunks.robots()) out += carried_text(name, robot, now);
   out += "all: " + fixed(chunks.area(), 0) + " m2";
+  const AreaAges ages = area_ages(chunks, now);
+  out += ", received within 10 s: " + fixed(100.0 * ages.within_10s, 0) +
+         " %, 1 min: " + fixed(100.0 * ages.within_1min, 0) +
+         " %, 10 min: " + fixed(100.0 * ages.within_10min, 0) +
+         " %, before the station's start: " + fixed(100.0 * ages.unknown, 0) + " %";
   if (map.refused() > 0) out += ", " + std::to_string(map.refused()) + " pieces refused";
   if (chunks.refused() > 0) out += ", " + std::to_string(chunks.refused()) + " parts without room";
+  if (chunks.refused_carried() > 0)
+    out += ", " + std::to_string(chunks.refused_carried()) + " carried parts refused";
   return out + "\n";
 }
 
@@ -58,11 +90,20 @@ nlohmann::json map_status_json(const MapReceiver& map, Time now) {
                       {"bytes", robot.bytes},
                       {"pieces", robot.pieces},
                       {"age", robot.heard ? nlohmann::json(seconds(now - *robot.heard)) : nlohmann::json()},
-                      {"waiting", robot.waiting}});
+                      {"waiting", robot.waiting},
+                      {"carried_blocks", robot.carried_blocks},
+                      {"carried", carried_json(robot, now)}});
+  const AreaAges ages = area_ages(chunks, now);
   return {{"robots", robots},
           {"m2", chunks.area()},
+          {"share_by_age",
+           {{"within_10s", ages.within_10s},
+            {"within_1min", ages.within_1min},
+            {"within_10min", ages.within_10min},
+            {"unknown", ages.unknown}}},
           {"refused_pieces", map.refused()},
-          {"refused_parts", chunks.refused()}};
+          {"refused_parts", chunks.refused()},
+          {"refused_carried_parts", chunks.refused_carried()}};
 }
 
 }  // namespace adit::station

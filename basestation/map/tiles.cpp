@@ -82,7 +82,8 @@ void Tiles::show(double resolution, std::vector<MapTile> tiles) {
     const auto known = tiles_.find(key);
     if (known == tiles_.end() && tiles_.size() == kMaxTiles) continue;
     shown.insert(key);
-    if (known != tiles_.end() && known->second.cells == tile.cells && known->second.runs == tile.runs)
+    if (known != tiles_.end() && known->second.cells == tile.cells && known->second.runs == tile.runs &&
+        known->second.received == tile.received)
       continue;
     tile.revision = ++revision_;
     tiles_[key] = std::move(tile);
@@ -92,6 +93,7 @@ void Tiles::show(double resolution, std::vector<MapTile> tiles) {
       continue;
     std::ranges::fill(tile.cells, MapTile::kUnknown);
     tile.runs.clear();
+    tile.received.clear();
     tile.revision = ++revision_;
   }
 }

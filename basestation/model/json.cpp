@@ -19,11 +19,12 @@ Error malformed(const char* what, const std::string& key) {
 /// Cells as runs: value, count, value, count, ...
 constexpr int kLowestVoxel = 32768;  // Added, as the numbers of a list have no sign.
 
-json runs_json(const std::vector<std::uint8_t>& cells) {
+template <class Value>
+json runs_json(const std::vector<Value>& cells) {
   json runs = json::array();
   for (std::size_t i = 0; i < cells.size();) {
     const auto end = std::find_if(cells.begin() + static_cast<std::ptrdiff_t>(i), cells.end(),
-                                  [&](std::uint8_t cell) { return cell != cells[i]; });
+                                  [&](Value cell) { return cell != cells[i]; });
     const auto next = static_cast<std::size_t>(end - cells.begin());
     runs.push_back(cells[i]);
     runs.push_back(next - i);
@@ -113,10 +114,12 @@ json json_of(const MapUpdate& update) {
                      {"y", tile.y},
                      {"revision", tile.revision},
                      {"cells", runs_json(tile.cells)},
-                     {"columns", columns_json(tile.runs)}});
+                     {"columns", columns_json(tile.runs)},
+                     {"received", runs_json(tile.received)}});
   return {{"resolution", update.resolution},
           {"revision", update.revision},
           {"run", update.run},
+          {"clock", update.clock},
           {"tiles", tiles}};
 }
 
@@ -167,6 +170,19 @@ void read_fields(JsonReader& in, RobotAnswer& answer) {
   in.read("holder", answer.holder);
 }
 
+/// The times of a tile; those of a station of an earlier release are missing.
+void read_received(JsonReader& in, MapTile& tile) {
+  constexpr std::size_t regions = std::size_t{MapTile::kRegions} * MapTile::kRegions;
+  std::vector<std::uint32_t> runs;
+  in.read("received", runs);
+  if (runs.size() % 2 != 0) return in.refuse("received");
+  for (std::size_t i = 0; i < runs.size(); i += 2) {
+    if (runs[i + 1] > regions - tile.received.size()) return in.refuse("received");
+    tile.received.insert(tile.received.end(), runs[i + 1], runs[i]);
+  }
+  if (!tile.received.empty() && tile.received.size() != regions) in.refuse("received");
+}
+
 void read_fields(JsonReader& in, MapTile& tile) {
   constexpr std::size_t cells = std::size_t{MapTile::kSide} * MapTile::kSide;
   in.read("x", tile.x);
@@ -181,6 +197,7 @@ void read_fields(JsonReader& in, MapTile& tile) {
     tile.cells.insert(tile.cells.end(), runs[i + 1], static_cast<std::uint8_t>(runs[i]));
   }
   if (tile.cells.size() != cells) in.refuse("cells");
+  read_received(in, tile);
   std::vector<std::uint32_t> columns;
   in.read("columns", columns);
   if (columns.size() % 3 != 0 || columns.size() > 3 * MapTile::kMaxRuns) return in.refuse("columns");
@@ -277,6 +294,7 @@ Result<MapUpdate> map_update_from(const json& object) {
   in.read("resolution", update.resolution);
   in.read("revision", update.revision);
   in.read("run", update.run);
+  in.read("clock", update.clock);
   in.read("tiles", update.tiles);
   if (!(update.resolution >= 0.01 && update.resolution <= 10.0)) in.refuse("resolution");
   if (!wrong.empty()) return malformed("a map update's", wrong);

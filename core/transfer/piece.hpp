@@ -4,14 +4,26 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace adit::transfer {
 
 /// Kind of content; the values travel on the wire.
-enum class Kind : std::uint8_t { map_blocks = 1, map_poses = 2, findings = 3 };
+enum class Kind : std::uint8_t {
+  map_blocks = 1,
+  map_poses = 2,
+  findings = 3,
+  carried_blocks = 4,  ///< Of another robot's map than the sender's.
+  carried_poses = 5,
+};
 
-/// 128 random bits stored on a station's disk.
+constexpr bool is_carried(std::uint8_t kind) {
+  return kind == static_cast<std::uint8_t>(Kind::carried_blocks) ||
+         kind == static_cast<std::uint8_t>(Kind::carried_poses);
+}
+
+/// 128 random bits: of a station, stored on its disk; of a carrier, drawn at each start.
 using PeerId = std::array<std::uint8_t, 16>;
 
 inline constexpr std::size_t kMaxPieceBytes = 1200;  ///< Largest content of a piece, bytes.
@@ -25,6 +37,7 @@ struct Piece {
   std::uint32_t
       waiting{};  ///< Parts of all kinds that the peer that lacks most still lacks, beside this piece.
   std::vector<std::uint8_t> data{};
+  bool for_carriers{false};  ///< For robots that carry it on to stations; else for the stations.
 };
 
 /// The pieces of one session of a sender that arrived at a peer.
@@ -50,12 +63,24 @@ struct Look {
   bool operator==(const Look&) const = default;
 };
 
+/// Digest of one robot's map as a station has it: equal parts have equal sums (perception::MapDigest).
+struct ContentDigest {
+  static constexpr std::size_t kParts = 33;
+  std::string robot{};
+  std::array<std::uint32_t, kParts> parts{};
+  bool operator==(const ContentDigest&) const = default;
+};
+
 /// A peer's acknowledgement of one sender's pieces.
 struct Ack {
   PeerId peer{};
   std::uint32_t start{};  ///< Of what the peer has: another one begins with nothing.
   Receipt receipt{};      ///< Of a session 0: the peer has no piece of this sender.
   std::optional<Look> look{};
+  bool carrier{false};                   ///< Of a robot that carries what it receives on to stations.
+  std::vector<std::string> senders{};    ///< Robots whose own pieces the peer received lately.
+  std::vector<ContentDigest> digests{};  ///< Of maps that the peer has.
+  bool all_digests{false};               ///< The peer has no other maps than those of `digests`.
 };
 
 }  // namespace adit::transfer

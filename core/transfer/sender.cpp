@@ -13,24 +13,44 @@ constexpr std::uint32_t kOvertaken = 4;
 
 }  // namespace
 
+bool Sender::make_room(bool for_carrier, Time now) {
+  if (peers_.size() < params_.max_peers) return true;
+  const auto last = std::min_element(peers_.begin(), peers_.end(), [](const auto& a, const auto& b) {
+    return std::pair(!a.second.carrier, a.second.heard) < std::pair(!b.second.carrier, b.second.heard);
+  });
+  const bool silent = now - last->second.heard >= params_.silence;
+  // What a silent station has is worth more than a carrier.
+  if (for_carrier ? !last->second.carrier || !silent : !last->second.carrier && !silent) return false;
+  forget(last->first);
+  return true;
+}
+
+void Sender::forget(PeerId peer) {
+  for (Source* source : sources_) source->leave(peer);
+  for (Flight& flight : flights_) std::erase(flight.awaited, peer);
+  peers_.erase(peer);
+}
+
+void Sender::join(const Ack& ack) {
+  for (Source* source : sources_)
+    if (!ack.carrier || source->for_carriers()) source->join(ack.peer);
+}
+
 Sender::Peer* Sender::admit(const Ack& ack, Time now) {
-  const auto found = peers_.find(ack.peer);
+  auto found = peers_.find(ack.peer);
+  if (found != peers_.end() && found->second.carrier && !ack.carrier) {
+    forget(ack.peer);  // A robot says that it is a carrier by a station's id.
+    found = peers_.end();
+  }
   if (found == peers_.end()) {
-    if (peers_.size() >= params_.max_peers) {
-      const auto oldest = std::min_element(peers_.begin(), peers_.end(), [](const auto& a, const auto& b) {
-        return a.second.heard < b.second.heard;
-      });
-      if (now - oldest->second.heard < params_.silence) return nullptr;
-      for (Source* source : sources_) source->leave(oldest->first);
-      for (Flight& flight : flights_) std::erase(flight.awaited, oldest->first);
-      peers_.erase(oldest);
-    }
+    if (!make_room(ack.carrier, now)) return nullptr;
     Peer& peer = peers_[ack.peer];
-    peer = {ack.start, {}, now, now};
-    for (Source* source : sources_) source->join(ack.peer);
+    peer = {ack.start, {}, now, now, ack.carrier};
+    join(ack);
     return &peer;
   }
   Peer& peer = found->second;
+  if (peer.carrier != ack.carrier) return nullptr;
   // Acknowledgements of an earlier start come late. A station may also go back to one whose content is on its
   // disk.
   const auto earlier = std::find(peer.earlier.begin(), peer.earlier.end(), ack.start);
@@ -47,12 +67,13 @@ Sender::Peer* Sender::admit(const Ack& ack, Time now) {
   if (peer.earlier.size() > kStarts) peer.earlier.pop_front();
   peer.start = ack.start;
   for (Flight& flight : flights_) std::erase(flight.awaited, ack.peer);
-  for (Source* source : sources_) source->join(ack.peer);
+  join(ack);
   return &peer;
 }
 
 bool Sender::acknowledged(const Ack& ack, Time now) {
   if (admit(ack, now) == nullptr) return false;
+  if (!ack.carrier) station_heard_ = now;
   if (ack.receipt.session == params_.session && ack.receipt.newest <= last_id_)
     settle(ack.peer, ack.receipt, now);
   return true;
@@ -113,8 +134,9 @@ Duration Sender::timeout() const {
 
 std::vector<PeerId> Sender::served(const Source& source, Time now) const {
   std::vector<std::pair<std::size_t, PeerId>> heard;
+  if (serves_carriers(now) && !source.for_carriers()) return {};
   for (const auto& [id, peer] : peers_)
-    if (now - peer.heard < params_.silence) heard.emplace_back(source.missing(id), id);
+    if (is_served(peer, now)) heard.emplace_back(source.missing(id), id);
   std::stable_sort(heard.begin(), heard.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<PeerId> out;
@@ -135,11 +157,10 @@ std::uint32_t Sender::waiting(const std::vector<PeerId>& peers) const {
 
 std::vector<Piece> Sender::due(Time now, const wire::SenderState& link) {
   expire(now);
+  if (!station_heard_) station_heard_ = now;
   std::vector<Piece> out;
-  const auto heard =
-      static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), [&](const auto& entry) {
-        return now - entry.second.heard < params_.silence;
-      }));
+  const auto heard = static_cast<std::size_t>(std::count_if(
+      peers_.begin(), peers_.end(), [&](const auto& entry) { return is_served(entry.second, now); }));
   if (heard == 0) return out;
   pacer_.observe(now, link, heard);
   for (Source* source : sources_) {
@@ -150,7 +171,8 @@ std::vector<Piece> Sender::due(Time now, const wire::SenderState& link) {
       auto content = source->next(peers, pacer_.piece_bytes(), now);
       if (!content) break;
       pacer_.sent(content->data.size());
-      out.push_back({source->kind(), ++last_id_, waiting(peers), std::move(content->data)});
+      out.push_back(
+          {source->kind(), ++last_id_, waiting(peers), std::move(content->data), serves_carriers(now)});
       flights_.push_back({last_id_, content->token, source, now, std::move(peers)});
     }
   }

@@ -2,6 +2,7 @@
 #pragma once
 #include <deque>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "core/transfer/pacer.hpp"
@@ -14,6 +15,8 @@ struct SenderParams {
   std::size_t max_peers{16};      ///< Peers whose content is remembered, [1, 16].
   std::size_t max_in_flight{96};  ///< Pieces that are neither acknowledged nor lost, [1, Receipt::kSpan).
   Duration silence{12s};          ///< A peer whose acknowledgement is older is sent nothing.
+  Duration station_silence{
+      15s};  ///< Carriers are sent to once no station acknowledged for this long, >= silence.
   Duration min_rejoin{
       2s};  ///< Shortest time between two starts of a peer, as each costs a round over all content.
   Duration min_timeout{1500ms};  ///< Bounds of the time after which a piece counts as lost.
@@ -28,6 +31,10 @@ struct SenderParams {
 /// `max_timeout`: acknowledgements are lost, too. Its content is missing again, and the source gives its
 /// newest state later.
 ///
+/// Carriers, robots that take content on to stations, are peers for content that is for them. As each peer
+/// costs a copy on the air, they are sent to only while no station is heard. A station takes a carrier's slot
+/// when there is no other.
+///
 /// A pure state machine, bounded in all that others can make it store. Sources must outlive it.
 class Sender {
  public:
@@ -35,7 +42,8 @@ class Sender {
 
   /// Adds a source; those added first go first.
   void add(Source& source) { sources_.push_back(&source); }
-  /// Takes an acknowledgement, genuine or not: it must come from a known station.
+  /// Takes an acknowledgement, genuine or not: it must come from a known station, or a known robot that says
+  /// that it is a carrier.
   /// Returns whether it is of the peer's present start.
   bool acknowledged(const Ack& ack, Time now);
   /// The pieces to send now. Call it at 10 to 50 Hz.
@@ -43,6 +51,10 @@ class Sender {
 
   std::uint32_t session() const { return params_.session; }
   std::size_t peers() const { return peers_.size(); }
+  /// Whether no station was heard for so long that carriers are sent to.
+  bool serves_carriers(Time now) const {
+    return station_heard_ && now - *station_heard_ >= params_.station_silence;
+  }
   std::size_t in_flight() const { return flights_.size(); }
   /// Time after which an acknowledgement that does not have a piece says that it was lost.
   Duration timeout() const;
@@ -54,6 +66,7 @@ class Sender {
     std::deque<std::uint32_t> earlier{};  ///< Starts that ended: their acknowledgements come late.
     Time heard{};
     Time joined{};  ///< When its present start was taken.
+    bool carrier{false};
   };
   /// A piece on its way.
   struct Flight {
@@ -64,6 +77,13 @@ class Sender {
     std::vector<PeerId> awaited{};  ///< Peers that have not acknowledged it.
   };
   Peer* admit(const Ack& ack, Time now);
+  /// Forgets a peer if there are too many. Returns false if none may go.
+  bool make_room(bool for_carrier, Time now);
+  void forget(PeerId peer);
+  void join(const Ack& ack);
+  bool is_served(const Peer& peer, Time now) const {
+    return peer.carrier == serves_carriers(now) && now - peer.heard < params_.silence;
+  }
   void settle(const PeerId& peer, const Receipt& receipt, Time now);
   void expire(Time now);
   void measure(Duration delay);
@@ -77,6 +97,7 @@ class Sender {
   std::vector<Source*> sources_{};
   std::map<PeerId, Peer> peers_{};
   std::deque<Flight> flights_{};
+  std::optional<Time> station_heard_{};  ///< A station acknowledged; at first: when this sender began.
   std::uint32_t last_id_{};
   bool measured_{};
   double delay_{}, deviation_{};  ///< Of acknowledgements, s.

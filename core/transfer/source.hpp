@@ -21,6 +21,8 @@ class Source {
   virtual ~Source() = default;
 
   virtual Kind kind() const = 0;
+  /// Whether robots that carry content on to stations get it as well.
+  virtual bool for_carriers() const { return false; }
   /// A peer that has nothing. A peer that joined before has nothing any more.
   virtual void join(const PeerId& peer) = 0;
   /// A peer that is forgotten.

@@ -75,6 +75,11 @@ inline constexpr Topic<radio::BulkPiece> kBulk{
     {"adit/bulk", "adit::radio::v1::BulkPiece", QosClass::pieces, 32, kUnkeyed, 1400}};
 inline constexpr Topic<radio::BulkAck> kBulkAck{
     {"adit/bulk_ack", "adit::radio::v1::BulkAck", QosClass::pieces, 4, kUnkeyed, 1400}};
+/// Partition of both topics for the robots that carry maps: they acknowledge there, and a robot that no
+/// station hears sends there.
+inline constexpr const char* kCarryPartition = "carry";
+/// Word in Capabilities::services of a robot that carries maps.
+inline constexpr const char* kCarryService = "carry_map";
 
 /// Robots to robots: position, motion, and their parts in what several robots do together.
 inline constexpr Topic<radio::TeamBeacon> kTeam{

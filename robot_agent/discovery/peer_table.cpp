@@ -43,6 +43,16 @@ const Peer* PeerTable::by_participant(const wire::ParticipantId& participant) co
   return found == peers_.end() ? nullptr : &*found;
 }
 
+bool PeerTable::is_robot(const std::string& name, const wire::ParticipantId& participant) const {
+  const Peer* known = by_participant(participant);
+  return known != nullptr && !known->station && !known->namesake && known->name == name;
+}
+
+bool PeerTable::carrier_present() const {
+  return std::any_of(peers_.begin(), peers_.end(),
+                     [](const Peer& peer) { return peer.present && !peer.namesake && peer.carries_maps; });
+}
+
 Peer* PeerTable::add(Peer peer, Time now) {
   if (peers_.size() >= kCapacity) {
     auto oldest = peers_.end();

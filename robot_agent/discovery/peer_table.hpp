@@ -24,6 +24,7 @@ struct Peer {
   double length{}, width{}, height{};  ///< Footprint and height, m
   double max_speed{};                  ///< m/s
   std::vector<std::string> modes{};
+  bool carries_maps{};                     ///< It carries maps of other robots on to stations.
   std::optional<Eigen::Vector3d> place{};  ///< Position of a station, map frame, m; unset: not announced.
 
   std::optional<HeardBeacon> heard_beacon{};  ///< Of a robot; unset: none arrived.
@@ -56,6 +57,8 @@ class PeerTable {
   /// The peer with that name; null if there is none. Namesakes are not found by name.
   const Peer* find(const std::string& name) const;
   const Peer* by_participant(const wire::ParticipantId& participant) const;
+  /// Whether that participant is bound to the other robot of that name.
+  bool is_robot(const std::string& name, const wire::ParticipantId& participant) const;
   /// The station that holds this robot; null if the robot has no holder, or the station was not heard yet.
   const Peer* holder() const;
   const PeerList& all() const { return peers_; }
@@ -84,6 +87,8 @@ class PeerTable {
   /// Counts a beacon that could not be read.
   void refuse_beacon(BeaconFault fault) { beacon_faults_.count(fault); }
   const BeaconFaults& beacon_faults() const { return beacon_faults_; }
+  /// Whether a robot is present that carries maps.
+  bool carrier_present() const;
   /// Number of other robots that are present.
   std::size_t robots_present() const;
   void leave(const wire::ParticipantId& participant);

@@ -327,14 +327,16 @@ void BlockSource::learn(const std::vector<Cell>& sent, std::uint16_t to, std::si
 }
 
 void BlockSource::note_sent(const Cell& cell, Place& place, std::uint16_t to) {
+  // A silent peer that acknowledged the same state still has it.
+  const auto has = static_cast<std::uint16_t>(place.is_sent() ? place.up_to_date & place.had_by : 0);
   place.waits_since.reset();
   place.sent_known = place.known;
   place.sent_occupied = place.occupied;
   place.sent_change = place.change;
-  place.up_to_date = to;
-  place.had_by = 0;
+  place.up_to_date = has | to;
+  place.had_by = has;
   for (auto& [id, peer] : peers_) {
-    if ((to & peer.bit) != 0)
+    if ((place.up_to_date & peer.bit) != 0)
       peer.forget(place.change);
     else
       add_missing(peer, cell, place);  // A peer that is silent now has an older state, or none.

@@ -107,6 +107,7 @@ class BlockSource final : public transfer::Source {
   void drop(std::uint32_t submap);
 
   transfer::Kind kind() const override { return transfer::Kind::map_blocks; }
+  bool for_carriers() const override { return true; }
   void join(const transfer::PeerId& peer) override;
   void leave(const transfer::PeerId& peer) override;
   std::size_t missing(const transfer::PeerId& peer) const override;

@@ -123,7 +123,9 @@ void MapKeeper::anchor() {
 }
 
 void MapKeeper::heard(const transfer::Ack& ack) {
-  const auto& [id, start, receipt, look] = ack;
+  const auto& id = ack.peer;
+  const auto& look = ack.look;
+  const std::uint32_t start = ack.start;
   if (!blocks_.knows(id)) {
     stations_.erase(id);
     return;

@@ -31,6 +31,7 @@ class PoseSource final : public transfer::Source {
   std::optional<perception::SubmapPose> pose(std::uint32_t submap) const;
 
   transfer::Kind kind() const override { return transfer::Kind::map_poses; }
+  bool for_carriers() const override { return true; }
   void join(const transfer::PeerId& peer) override;
   void leave(const transfer::PeerId& peer) override { peers_.erase(peer); }
   std::size_t missing(const transfer::PeerId& peer) const override;

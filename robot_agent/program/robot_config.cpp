@@ -136,6 +136,7 @@ void read_robot_keys(const config::Node& node, const std::string& file, RobotCon
   }
   if (node.has("perception"))
     c.perception = static_cast<PerceptionLevel>(node.choice("perception", {"off", "odometry", "slam"}));
+  if (const auto map = node.child_if("map"); map.present()) c.carry_maps = map.flag("carry", false);
   if (node.has("start_height")) c.start_height = node.number("start_height", config::within(-1e5, 1e5));
   c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));
   if (node.has("tree")) c.tree = find_tree(node.text("tree"), file);
@@ -160,6 +161,7 @@ AgentParams agent_params(const RobotConfig& config) {
   params.safeguards = config.safeguards;
   params.velocity = config.velocity;
   params.perception = config.perception;
+  params.carry_maps = config.carry_maps;
   params.resume_after_restart = config.resume_after_restart;
   return params;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/radio/convert.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 
+#include "core/wire/topics.hpp"
 #include "robot_agent/common/clipped.hpp"
 
 namespace adit::agent {
@@ -94,6 +96,9 @@ Peer from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender
   r.height = in.height();
   r.max_speed = in.max_speed();
   r.modes = in.modes();
+  const auto& services = in.services();
+  r.carries_maps = !r.station &&
+                   std::find(services.begin(), services.end(), wire::topics::kCarryService) != services.end();
   const Eigen::Vector3d place(in.place()[0], in.place()[1], in.place()[2]);
   if (r.station && in.placed() && place.allFinite()) r.place = place;
   return r;
@@ -275,6 +280,15 @@ radio::Capabilities to_radio(const Platform& platform, const std::string& robot,
   return out;
 }
 
+radio::BulkReceipt to_radio(const std::string& robot, const transfer::Receipt& receipt) {
+  radio::BulkReceipt out;
+  out.robot(robot);
+  out.session(receipt.session);
+  out.newest(receipt.newest);
+  out.received(receipt.received);
+  return out;
+}
+
 transfer::Ack from_radio(const radio::BulkAck& in, const std::string& robot) {
   transfer::Ack out{in.station_id(), in.start(), {}, {}};
   if (in.look().size() == 3) {
@@ -283,8 +297,14 @@ transfer::Ack from_radio(const radio::BulkAck& in, const std::string& robot) {
         look.radius <= transfer::Look::kMaxRadius)
       out.look = look;
   }
-  for (const radio::BulkReceipt& receipt : in.receipts())
+  for (const radio::BulkReceipt& receipt : in.receipts()) {
     if (receipt.robot() == robot) out.receipt = {receipt.session(), receipt.newest(), receipt.received()};
+    out.senders.push_back(receipt.robot());
+  }
+  out.carrier = in.carrier();
+  out.all_digests = in.all_digests();
+  for (const radio::BulkDigest& digest : in.digests())
+    out.digests.push_back({digest.robot(), digest.parts()});
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "core/wire/component_io.hpp"
 #include "core/wire/link/peer_meter.hpp"
@@ -35,7 +36,10 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::LinkReport> link{};
   wire::Writer<radio::Presence> presence{};
   wire::Writer<radio::TeamBeacon> team{};
-  wire::Writer<radio::BulkPiece> bulk{};
+  wire::Writer<radio::BulkPiece> bulk{}, bulk_to_carriers{};
+  wire::Writer<radio::BulkAck> carrier_ack{};  ///< Open if this robot carries maps.
+  std::function<void(const radio::BulkAck&, const wire::SampleInfo&)> acknowledged{};
+  bool reaches_carriers{false};
   radio::Presence presence_sample{};
   radio::Capabilities capabilities_sample{};
   wire::PeerMeter stations{};  // Quality of the link from each station.
@@ -134,6 +138,10 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
     settle([&e, a = *a] { (void)e.acknowledgement.write(to_radio(a, e.robot)); });
   };
   Namesakes& namesakes = dependencies.namesakes;
+  e.acknowledged = [&e, taken = dependencies.pieces_acknowledged](const radio::BulkAck& a,
+                                                                  const wire::SampleInfo& info) {
+    if (taken) taken(a.station(), from_radio(a, e.robot), info.sender);
+  };
   e.wire.on_participant(e.strand,
                         [&e, commands, &directory, &namesakes](const wire::ParticipantEvent& event) {
                           if (!e.io.valid()) return;
@@ -219,14 +227,26 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                     e.malformed_beacons += beacon ? 0 : 1;
                     take(beacon, info.sender);
                   }),
-           e.read(topics::kBulkAck,
-                  [&e, taken = dependencies.pieces_acknowledged](const radio::BulkAck&a,
-                                                                 const wire::SampleInfo&info) {
-                    if (taken) taken(a.station(), from_radio(a, e.robot), info.sender);
-                  }),
+           e.read(topics::kBulkAck, e.acknowledged),
        })
     if (!made) return made.error();
-  return {};
+  if (!dependencies.piece_to_carry) return {};
+  if (auto made = e.io.open(e.carrier_ack, topics::kBulkAck, topics::kCarryPartition); !made)
+    return made.error();
+  return e.read(
+      topics::kBulk,
+      [take = dependencies.piece_to_carry](const radio::BulkPiece& piece, const wire::SampleInfo& info) {
+        take({piece.robot(), piece.session(), piece.id(), piece.kind(), piece.data()}, info.sender);
+      },
+      topics::kCarryPartition);
+}
+
+void RadioEdge::reach_carriers() {
+  Endpoints& e = *endpoints_;
+  if (std::exchange(e.reaches_carriers, true)) return;
+  // Errors leave the map with this robot.
+  (void)e.io.open(e.bulk_to_carriers, topics::kBulk, topics::kCarryPartition);
+  (void)e.read(topics::kBulkAck, e.acknowledged, topics::kCarryPartition);
 }
 
 void RadioEdge::close() {
@@ -247,7 +267,23 @@ void RadioEdge::send(const transfer::Piece& piece, std::uint32_t session) {
   out.kind(static_cast<std::uint8_t>(piece.kind));
   out.waiting(piece.waiting);
   out.data(piece.data);
-  (void)endpoints_->bulk.write(out);  // Best effort: core/transfer repairs what is lost.
+  // Best effort: core/transfer repairs what is lost.
+  if (!piece.for_carriers)
+    (void)endpoints_->bulk.write(out);
+  else if (endpoints_->bulk_to_carriers)
+    (void)endpoints_->bulk_to_carriers.write(out);
+}
+
+void RadioEdge::send(const transfer::PeerId& carrier,
+                     const std::vector<std::pair<std::string, transfer::Receipt>>& receipts) {
+  if (!endpoints_->carrier_ack) return;
+  radio::BulkAck out;
+  out.station(endpoints_->robot);
+  out.station_id(carrier);
+  out.start(1);
+  out.carrier(true);
+  for (const auto& [robot, receipt] : receipts) out.receipts().push_back(to_radio(robot, receipt));
+  (void)endpoints_->carrier_ack.write(out);  // Best effort: a receipt has what those before it had.
 }
 
 void RadioEdge::send_authority(const CommandInterface& commands, Time now) {
@@ -286,6 +322,7 @@ void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::u
                                   const ModeTable& modes) {
   Endpoints& e = *endpoints_;
   e.capabilities_sample = to_radio(platform, e.robot, id, protocol, modes);
+  if (e.carrier_ack) e.capabilities_sample.services().push_back(topics::kCarryService);
   (void)e.capabilities.write(e.capabilities_sample);
   // Without it, stations show no route.
   if (platform.router != "none") (void)e.io.open(e.route, topics::kRoute);

@@ -8,6 +8,7 @@
 #include "core/config/platform.hpp"
 #include "core/transfer/piece.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
+#include "robot_agent/carry/carrier.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/common/followed_route.hpp"
 #include "robot_agent/discovery/directory.hpp"
@@ -56,6 +57,8 @@ class RadioEdge {
     /// Takes what a station has of this robot's pieces.
     std::function<void(const std::string& station, const transfer::Ack& ack, const wire::ParticipantId& from)>
         pieces_acknowledged{};
+    /// Takes a piece of another robot's map. Empty: this robot carries no maps.
+    std::function<void(const PieceToCarry& piece, const wire::ParticipantId& from)> piece_to_carry{};
   };
 
   /// `io`: the command component's, on the radio domain. Errors: those of the participant.
@@ -78,8 +81,13 @@ class RadioEdge {
   void send_route(const FollowedRoute& route);
   /// Sends a beacon to the other robots.
   void send(const TeamBeacon& beacon);
-  /// Sends a piece of content to the stations. `session`: of the sender.
+  /// Sends a piece of content to the stations, or to the carriers. `session`: of the sender.
   void send(const transfer::Piece& piece, std::uint32_t session);
+  /// Opens the endpoints to the robots that carry maps, unless they are open; nothing is sent to them before.
+  void reach_carriers();
+  /// Sends a carrier's receipts to the robots that reach for carriers.
+  void send(const transfer::PeerId& carrier,
+            const std::vector<std::pair<std::string, transfer::Receipt>>& receipts);
   /// Sends the capabilities, and from now on a heartbeat once a second and when a participant appears.
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol,
                          const ModeTable& modes = ModeTable::shipped());

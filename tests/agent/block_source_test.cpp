@@ -47,6 +47,21 @@ class BlockSourceTest : public testing::Test {
   };
 };
 
+TEST_F(BlockSourceTest, ASilentPeerHasWhatItAcknowledgedWhenAnotherOneGetsIt) {
+  source.join(kOne);
+  for (int x = 0; x < 50; ++x) put(x);
+  ASSERT_FALSE(next({kOne}, token).blocks.empty());
+  source.acknowledged(kOne, token);
+  source.settled(token);
+  ASSERT_EQ(source.missing(kOne), 0U);
+  put(7, 0xff);
+  source.join(kTwo);
+  now += 200s;
+  while (source.missing(kTwo) > 0) ASSERT_FALSE(next({kTwo}, token).blocks.empty());
+  EXPECT_EQ(source.missing(kOne), 1U) << "what changed since";
+  EXPECT_FALSE(source.complete(kOne, 0));
+}
+
 TEST_F(BlockSourceTest, SendsTheNewestFirstAndNothingTwice) {
   source.join(kOne);
   for (int x = 0; x < 100; ++x) put(x);

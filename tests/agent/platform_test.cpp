@@ -41,6 +41,17 @@ TEST(PlatformSwap, OneWordInARobotsFileDecidesWhatIsLaunched) {
   EXPECT_FALSE(wheeled.holonomic || car.holonomic);
 }
 
+TEST(PlatformSwap, ARobotThatCarriesMapsSaysSo) {
+  AgentParams params{};
+  params.name = "r1";
+  params.platform = config::load_platform("wheeled").value();
+  params.carry_maps = true;
+  AgentBench bench(params);
+  auto& op = bench.join("op1");
+  bench.run(7s);
+  EXPECT_THAT(op.capabilities.services(), testing::Contains("carry_map"));
+}
+
 TEST(PlatformSwap, WhatDoesNotFitTheDriveIsToldAtTheStart) {
   const auto start = [](const auto& change) {
     AgentParams params{};

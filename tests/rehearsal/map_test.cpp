@@ -59,6 +59,39 @@ TEST(MapRehearsal, ARestartedAgentHasItsMapForAStationThatComesLater) {
   EXPECT_GT(seen(report), 110.0);
 }
 
+/// Two robots in two halls; the station never hears the first one. `carry`: of the second one.
+std::string halls(bool carry, const std::string& more) {
+  return "world: {boxes: [[-2, 22, -4, -3.8, 0, 2.5], [-2, 22, 3.8, 4, 0, 2.5], [-2.2, -2, -4, 4, 0, 2.5], "
+         "[22, 22.2, -4, 4, 0, 2.5], [10, 10.2, -4, 4, 0, 2.5]], floor: 0, ceiling: 3}\n"
+         "duration: 90\nlink: mesh_500k\nlidar: full\nperception: slam\n"
+         "robots:\n  - {id: r1, platform: wheeled, pose: [4, 0, 0]}\n  - {id: r2, platform: wheeled, pose: "
+         "[16, 0, 0]" +
+         std::string(carry ? ", map: {carry: true}" : "") +
+         "}\n"
+         "basestations:\n  - {id: op1, pose: [14, 0]}\n"
+         "script:\n  - {at: 1, by: op1, do: take r2}\n  - {at: 2, by: op1, do: goto r2 19 0}\n"
+         "faults:\n  - {at: 0, cut: [r1, op1], for: 90}\n" +
+         more;
+}
+
+TEST(CarriedMapRehearsal, ARobotThatIsAllowedToBringsTheMapOfOneThatIsOutOfReach) {
+  const RunReport without = run_text(halls(false, ""), "halls.yaml");
+  const RunReport with = run_text(halls(true, ""), "halls.yaml");
+  for (const RunReport* report : {&without, &with})
+    EXPECT_TRUE(report->ok()) << (report->complaints().empty() ? "" : report->complaints().front());
+  EXPECT_GT(seen(without), 60.0);
+  EXPECT_GT(seen(with), seen(without) + 60.0) << "the other hall";
+}
+
+TEST(CarriedMapRehearsal, SurvivesARestartOfTheCarrierAndOfTheStation) {
+  const RunReport report =
+      run_text(halls(true,
+                     "  - {at: 22, crash: r2}\n  - {at: 40, crash: r1}\n  - {at: 50, crash: op1}\n"
+                     "  - {at: 55, hang: r2/command}\n"),
+               "halls.yaml");
+  EXPECT_GT(seen(report), 120.0);
+}
+
 /// Megabytes of memory that this process uses.
 double resident() {
   std::ifstream status("/proc/self/statm");

@@ -41,6 +41,20 @@ class RobotFiles : public testing::Test {
   Scratch scratch{};
 };
 
+TEST_F(RobotFiles, SayWhetherARobotCarriesMaps) {
+  const auto carries = [this](const std::string& keys) {
+    const auto s = read("{id: r1, platform: wheeled, pose: [0, 0, 0]" + keys + "}");
+    return s.ok() && s->robots.at(0).settings.carry_maps;
+  };
+  EXPECT_FALSE(carries(""));
+  EXPECT_TRUE(carries(", map: {carry: true}"));
+  EXPECT_FALSE(carries(", map: {carry: false}"));
+  for (const char* wrong : {"map: {carry: perhaps}", "map: true", "map: {carries: true}"})
+    EXPECT_NE(complaint(std::string("{id: r1, platform: wheeled, pose: [0, 0, 0], ") + wrong + "}"),
+              "nothing")
+        << wrong;
+}
+
 TEST_F(RobotFiles, GiveEverythingThatTheScenarioDoesNotSay) {
   scratch.write("scout.yaml", kRobotFile);
   const auto s = read("{file: scout.yaml}");

@@ -270,21 +270,28 @@ MapTile tile(int x, int y, std::uint64_t seed) {
     for (int z = static_cast<int>(random.uniform() * 60000.0) - 32000, k = 0; k < 3; ++k, z += 400)
       out.runs.push_back({static_cast<std::uint16_t>(cell), static_cast<std::int16_t>(z),
                           static_cast<std::uint16_t>(1 + random.uniform() * 300.0)});
+  for (int region = 0; region < MapTile::kRegions * MapTile::kRegions; ++region)
+    out.received.push_back(static_cast<std::uint32_t>(random.uniform() * 3.0) * 100'000);
   return out;
 }
 
 TEST(ModelJson, TilesOfTheMapComeBackAsTheyWere) {
-  const MapUpdate update{
-      .resolution = 0.2, .revision = 9, .run = 1ULL << 63, .tiles = {tile(-3, 2, 5), tile(0, 0, 9)}};
+  const MapUpdate update{.resolution = 0.2,
+                         .revision = 9,
+                         .clock = 500'000,
+                         .run = 1ULL << 63,
+                         .tiles = {tile(-3, 2, 5), tile(0, 0, 9)}};
   const auto back = sent(json_of(update), map_update_from);
   ASSERT_TRUE(back) << back.error().text;
   EXPECT_EQ(back->run, update.run);
+  EXPECT_EQ(back->clock, update.clock);
   ASSERT_EQ(back->tiles.size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(back->tiles[i].x, update.tiles[i].x);
     EXPECT_EQ(back->tiles[i].revision, update.tiles[i].revision);
     EXPECT_EQ(back->tiles[i].cells, update.tiles[i].cells);
     EXPECT_EQ(back->tiles[i].runs, update.tiles[i].runs);
+    EXPECT_EQ(back->tiles[i].received, update.tiles[i].received);
     EXPECT_FALSE(update.tiles[i].runs.empty());
   }
 }
@@ -356,6 +363,10 @@ TEST(ModelJson, HostileTilesAreRefused) {
   EXPECT_FALSE(with("columns", json(std::vector<std::uint32_t>(3 * (MapTile::kMaxRuns + 1), 1))));
   EXPECT_TRUE(with("columns", json::array())) << "a flat station";
   EXPECT_FALSE(with("x", 5'000'000'000));
+  EXPECT_FALSE(with("received", json::array({1, 255}))) << "one region is missing";
+  EXPECT_FALSE(with("received", json::array({1, 257}))) << "one too many";
+  EXPECT_FALSE(with("received", json::array({1}))) << "half a run";
+  EXPECT_TRUE(with("received", json::array())) << "a station of an earlier release";
 }
 
 }  // namespace

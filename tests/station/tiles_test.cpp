@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "basestation/map/tile_ages.hpp"
 #include "core/time/random.hpp"
 
 namespace adit::station {
@@ -131,6 +132,33 @@ TEST(Tiles, AreSentAgainWhenAVoxelChangesThatIsNotSeenFromAbove) {
   map.set({-128, -1, 20}, Voxel::occupied);  // Higher than the wall, and a gap between.
   tiles.show(kEdge, tiles_of(map));
   EXPECT_EQ(tiles.since(before, 10).tiles.size(), 1U);
+}
+
+TEST(Tiles, ARegionHasTheAgeOfItsNewestBlock) {
+  VoxelImage map(kEdge);
+  for (const int x : {0, 10, 127, -1}) map.set({x, 1, 0}, Voxel::free);
+  std::vector<MapTile> tiles = tiles_of(map);
+  MapPart part{Pose3{}, {{{0, 0, 0}, 1, 0}, {{0, 0, 1}, 1, 0}, {{31, 0, 0}, 1, 0}, {{-1, 0, 0}, 1, 0}}, true};
+  part.received = {41, 101, 0, 201};
+  add_received(tiles, {part}, kEdge);
+  Tiles view;
+  view.show(kEdge, tiles);
+  MapUpdate update = view.since(0, 10);
+  update.clock = tile_clock(401);
+  const TileMap shown = updated({}, std::move(update));
+  const MapTile& right = *shown.tiles.at({0, 0});
+  EXPECT_EQ(age_at(shown, right, 1, 1), 30.0) << "the newest of two";
+  EXPECT_EQ(age_at(shown, right, 127, 1), std::nullopt) << "from the disk";
+  EXPECT_EQ(age_at(shown, right, 20, 1), std::nullopt);
+  EXPECT_EQ(age_at(shown, *shown.tiles.at({-1, 0}), 127, 1), 20.0);
+
+  // A newer time of a region is sent, though it looks the same.
+  const std::uint64_t before = view.revision();
+  part.received[0] = 301;
+  std::vector<MapTile> later = tiles_of(map);
+  add_received(later, {part}, kEdge);
+  view.show(kEdge, later);
+  EXPECT_EQ(view.since(before, 10).tiles.size(), 1U);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ class ToySource final : public Source {
   std::size_t open_tokens() const { return flights_.size(); }
 
   Kind kind() const override { return Kind::map_blocks; }
+  bool for_carriers() const override { return carried; }
   void join(const PeerId& peer) override {
     ++joins;
     lacks_[peer].clear();
@@ -55,6 +56,7 @@ class ToySource final : public Source {
   void settled(std::uint64_t token) override { flights_.erase(token); }
 
   int joins{}, losses{};
+  bool carried{true};
 
  private:
   std::map<std::uint8_t, std::uint8_t> values_{};

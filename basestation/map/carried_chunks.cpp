@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is stored of maps, and how: by the robot itself, or by one that carried it here.
+#include <algorithm>
+
+#include "basestation/map/chunk_store.hpp"
+
+namespace adit::station {
+namespace {
+
+constexpr Duration kTick = 100ms;
+constexpr Duration kHeardNow = 10s;  // A carrier sends nothing of a robot that was heard more recently.
+
+bool is_heard(const ChunkStore::Robot& robot, std::optional<Time> now) {
+  return robot.heard && now && *now - *robot.heard < kHeardNow;
+}
+
+}  // namespace
+
+std::uint32_t ChunkStore::clock(Time now) const {
+  if (!begun_) return 0;
+  return static_cast<std::uint32_t>(std::clamp<std::int64_t>((now - *begun_) / kTick, 0, 1LL << 30)) + 1;
+}
+
+void ChunkStore::set_now(std::optional<Time> now) {
+  if (now && !begun_) begun_ = now;
+  now_ = now ? clock(*now) : 0;
+}
+
+std::optional<Duration> ChunkStore::age(const Block& block, Time now) const {
+  if (block.received == 0 || !begun_) return std::nullopt;
+  return std::max<Duration>(Duration{}, now - *begun_ - (block.received - 1) * kTick);
+}
+
+void ChunkStore::put(Robot& robot, Submap& submap, const perception::SubmapKey& key,
+                     const perception::BlockUpdate& update, bool carried) {
+  const auto [found, added] = submap.blocks.try_emplace(update.block.index);
+  Block& block = found->second;
+  if (added) {
+    ++blocks_;
+    ++robot.blocks;
+  } else {
+    robot.digest.remove(key, {update.block.index, block.known, block.occupied});
+    robot.carried_blocks -= block.carried;
+    carried_blocks_ -= block.carried;
+  }
+  block = {update.block.known, update.block.occupied, update.revision, now_, carried ? 1U : 0U};
+  robot.carried_blocks += block.carried;
+  carried_blocks_ += block.carried;
+  robot.digest.add(key, update.block);
+  ++revision_;
+}
+
+void ChunkStore::put(Robot& robot, Submap& submap, const perception::SubmapPose& pose, bool carried) {
+  if (submap.T_map_submap) robot.digest.remove(pose.key, submap.pose_revision);
+  submap.T_map_submap = pose.T_map_submap;
+  submap.pose_revision = pose.revision;
+  submap.pose_carried = carried;
+  robot.digest.add(pose.key, pose.revision);
+  ++revision_;
+}
+
+void ChunkStore::note_waiting(const std::string& robot, std::uint32_t waiting) {
+  if (const auto found = robots_.find(robot); found != robots_.end()) found->second.waiting = waiting;
+}
+
+ChunkStore::Robot* ChunkStore::count_carried(const std::string& carrier, const std::string& robot,
+                                             std::size_t bytes, std::optional<Time> now) {
+  if (!robots_.contains(robot)) {
+    const auto carried_only = std::count_if(robots_.begin(), robots_.end(),
+                                            [](const auto& entry) { return entry.second.pieces == 0; });
+    if (robots_.size() >= params_.max_robots ||
+        static_cast<std::size_t>(carried_only) >= params_.max_carried_robots)
+      return nullptr;
+  }
+  Robot& from = robots_[robot];
+  if (!from.carriers.contains(carrier) && from.carriers.size() >= params_.max_carriers)
+    from.carriers.erase(
+        std::min_element(from.carriers.begin(), from.carriers.end(),
+                         [](const auto& a, const auto& b) { return a.second.last < b.second.last; }));
+  Carried& count = from.carriers[carrier];
+  count.bytes += bytes;
+  ++count.pieces;
+  count.heard = now;
+  count.last = ++carried_pieces_;
+  set_now(now);
+  return &from;
+}
+
+Result<std::size_t> ChunkStore::take_carried(const std::string& carrier, const perception::MapPiece& piece,
+                                             std::size_t bytes, std::optional<Time> now) {
+  Robot* robot = count_carried(carrier, piece.key.robot, bytes, now);
+  Submap* into = robot != nullptr ? submap(piece.key.robot, piece.key) : nullptr;
+  std::size_t newer = 0, refused = into != nullptr ? 0 : piece.blocks.size();
+  for (std::size_t i = 0; into != nullptr && i < piece.blocks.size(); ++i) {
+    const perception::BlockUpdate& update = piece.blocks[i];
+    const auto known = into->blocks.find(update.block.index);
+    const bool is_new = known == into->blocks.end();
+    const bool replaces_carried = !is_new && known->second.carried != 0;
+    if (!is_new && update.revision <= known->second.revision) continue;
+    if (!is_new && !replaces_carried && is_heard(*robot, now)) continue;
+    if ((is_new && blocks_ >= params_.max_blocks) ||
+        (!replaces_carried && carried_blocks_ >= params_.max_carried_blocks)) {
+      ++refused;
+      continue;
+    }
+    put(*robot, *into, piece.key, update, true);
+    ++newer;
+  }
+  if (robot != nullptr) robot->carriers.at(carrier).parts += newer;
+  refused_carried_ += refused;
+  if (refused > 0) return Error{Reason::queue_full, "no room for more of the maps that robots carry"};
+  return newer;
+}
+
+Result<std::size_t> ChunkStore::take_carried(const std::string& carrier, const perception::SubmapPoses& poses,
+                                             std::size_t bytes, std::optional<Time> now) {
+  const std::string& name = poses.poses.front().key.robot;
+  Robot* robot = count_carried(carrier, name, bytes, now);
+  std::size_t newer = 0, refused = 0;
+  for (const perception::SubmapPose& pose : poses.poses) {
+    Submap* into = robot != nullptr ? submap(name, pose.key) : nullptr;
+    if (into == nullptr) {
+      ++refused;
+    } else if (!into->T_map_submap ||
+               (pose.revision > into->pose_revision && (into->pose_carried || !is_heard(*robot, now)))) {
+      put(*robot, *into, pose, true);
+      ++newer;
+    }
+  }
+  if (robot != nullptr) robot->carriers.at(carrier).parts += newer;
+  refused_carried_ += refused;
+  if (refused > 0) return Error{Reason::queue_full, "no room for more of the maps that robots carry"};
+  return newer;
+}
+
+}  // namespace adit::station

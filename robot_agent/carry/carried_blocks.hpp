@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <compare>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/transfer/source.hpp"
+#include "perception/stream/map_digest.hpp"
+#include "perception/stream/piece.hpp"
+
+namespace adit::agent {
+
+/// Bounds of the maps that a robot carries.
+struct CarryBounds {
+  std::size_t max_robots{16};
+  std::size_t max_submaps{1024};    ///< Of one robot.
+  std::size_t max_blocks{200'000};  ///< Of all robots; each takes about 100 B.
+};
+
+/// Whether a station should get a robot's map from here now.
+using WantsMap = std::function<bool(const transfer::PeerId& station, const std::string& robot)>;
+
+/// The numbers of the peers of a carried source, one bit each.
+class PeerSlots {
+ public:
+  static constexpr std::size_t kSlots = 16;
+  static constexpr std::uint16_t bit(std::size_t slot) { return static_cast<std::uint16_t>(1U << slot); }
+
+  /// Takes a slot; nothing: all are taken.
+  std::optional<std::size_t> join(const transfer::PeerId& peer);
+  void leave(const transfer::PeerId& peer) { slots_.erase(peer); }
+  std::optional<std::size_t> find(const transfer::PeerId& peer) const;
+  const std::map<transfer::PeerId, std::size_t>& all() const { return slots_; }
+
+ private:
+  std::map<transfer::PeerId, std::size_t> slots_{};
+};
+
+/// The blocks of other robots' maps, for the stations that lack them: the newest state that came of each,
+/// under the names and revisions that its robot gave it. A block goes to a station once, unless it is lost or
+/// a newer state comes. Parts whose digest is that of the station do not go.
+class CarriedBlocks final : public transfer::Source {
+ public:
+  CarriedBlocks(CarryBounds bounds, WantsMap wants) : bounds_(bounds), wants_(std::move(wants)) {}
+
+  /// Takes blocks of one robot's map. Returns whether there was room for all of them.
+  bool take(const perception::MapPiece& piece);
+  /// Takes the digest of a robot's map that a station has.
+  void compare(const transfer::PeerId& station, const transfer::ContentDigest& digest);
+  /// The stored state of a block; nothing: it is not here.
+  std::optional<perception::CoarseBlock> find(const perception::SubmapKey& key,
+                                              const perception::BlockIndex& index) const;
+  std::size_t size() const { return blocks_; }
+  /// Number of blocks of one robot.
+  std::size_t size(const std::string& robot) const;
+
+  transfer::Kind kind() const override { return transfer::Kind::carried_blocks; }
+  void join(const transfer::PeerId& peer) override;
+  void leave(const transfer::PeerId& peer) override { slots_.leave(peer); }
+  std::size_t missing(const transfer::PeerId& peer) const override;
+  std::optional<Content> next(std::span<const transfer::PeerId> peers, std::size_t max_bytes,
+                              Time now) override;
+  void acknowledged(const transfer::PeerId&, std::uint64_t) override {}
+  void lost(const transfer::PeerId& peer, std::uint64_t token) override;
+  void settled(std::uint64_t token) override { flights_.erase(token); }
+
+ private:
+  struct Ref {
+    std::size_t submap{};
+    perception::BlockIndex index{};
+    auto operator<=>(const Ref&) const = default;
+  };
+  struct Block {
+    std::uint64_t known{}, occupied{};
+    std::uint32_t revision{};
+    std::uint16_t had_by{};  ///< Bits of the peers that have this state, or to which it is on its way.
+  };
+  /// A part of a map, see perception::MapDigest.
+  struct Part {
+    std::map<Ref, Block> blocks{};
+    std::array<std::size_t, PeerSlots::kSlots> missing{};  ///< Blocks that the peer of each slot lacks.
+    std::uint32_t sum{};
+  };
+  struct Robot {
+    std::vector<perception::SubmapKey> submaps{};
+    std::array<Part, perception::MapDigest::kPoses> parts{};
+    std::size_t size() const;
+  };
+  struct Sent {
+    std::size_t part{};
+    Ref ref{};
+    std::uint32_t revision{};
+  };
+  struct Flight {
+    std::string robot{};
+    std::vector<Sent> blocks{};
+  };
+  /// A block that a piece could have.
+  struct Candidate {
+    Sent at{};
+    perception::BlockUpdate update{};
+  };
+  /// What the peer of a slot lacks of a robot's map: blocks of one submap, the newest first.
+  std::vector<Candidate> lacked(const Robot& robot, std::size_t slot) const;
+  std::optional<std::size_t> number_of(Robot& robot, const perception::SubmapKey& key) const;
+
+  CarryBounds bounds_;
+  WantsMap wants_;
+  PeerSlots slots_{};
+  std::map<std::string, Robot> robots_{};
+  std::map<std::uint64_t, Flight> flights_{};
+  std::uint64_t tokens_{};
+  std::size_t blocks_{};
+};
+
+}  // namespace adit::agent

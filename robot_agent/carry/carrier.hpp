@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result/result.hpp"
+#include "core/transfer/receiver.hpp"
+#include "robot_agent/carry/carried_blocks.hpp"
+#include "robot_agent/carry/carried_poses.hpp"
+#include "robot_agent/carry/station_views.hpp"
+
+namespace adit::agent {
+
+/// A piece that another robot sent to the carriers.
+struct PieceToCarry {
+  std::string robot{};  ///< The robot whose participant sent it.
+  std::uint32_t session{}, id{};
+  std::uint8_t kind{};  ///< Of transfer::Kind, or of a later release.
+  std::span<const std::uint8_t> data{};
+};
+
+/// Carries the maps of other robots to the stations: receives the map of a robot that hears no station, and
+/// sends it on where a station is heard. In memory only: after a restart it has another id and nothing, so
+/// that robots send it all again. Maps are carried once: what came from a carrier is not carried on. Runs on
+/// the command strand.
+class Carrier {
+ public:
+  /// `seed`: of the id, another one at each start. Sources must not be used after this.
+  explicit Carrier(std::uint64_t seed, CarryBounds bounds = {});
+  Carrier(const Carrier&) = delete;
+  Carrier& operator=(const Carrier&) = delete;
+
+  /// Takes a piece. Errors: malformed (also: of another robot's map), wrong_protocol (of another release),
+  /// not_supported (no part of a map), queue_full (no room). All but malformed are acknowledged, as the piece
+  /// would come again without end.
+  Result<void> take(const PieceToCarry& piece, Time now);
+  /// The receipts to send now, by robot, see transfer::Receiver::due. `bandwidth`: of the own link, bit/s.
+  std::optional<std::vector<std::pair<std::string, transfer::Receipt>>> due(Time now, double bandwidth) {
+    return receiver_.due(now, bandwidth);
+  }
+  /// The peer as which it acknowledges.
+  const transfer::PeerId& id() const { return id_; }
+
+  /// Its content for the sender to stations, in the order in which it goes.
+  std::array<transfer::Source*, 2> sources() { return {&poses_, &blocks_}; }
+  /// A station acknowledged something, after the sender took that.
+  void heard(const transfer::Ack& ack, Time now);
+  /// Says what the time is.
+  void tick(Time now) { now_ = now; }
+
+  const CarriedBlocks& blocks() const { return blocks_; }
+  /// Number of pieces that were refused.
+  std::uint64_t refused() const { return refused_; }
+
+ private:
+  Result<void> store(const PieceToCarry& piece);
+
+  transfer::PeerId id_{};
+  Time now_{};
+  StationViews views_{};
+  CarriedPoses poses_;
+  CarriedBlocks blocks_;
+  transfer::Receiver receiver_{};
+  std::uint64_t refused_{};
+};
+
+}  // namespace adit::agent
