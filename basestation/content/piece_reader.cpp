@@ -27,7 +27,9 @@ void PieceReader::take(const Piece& piece) {
   };
   const auto taker = takers_.find(piece.kind);
   const Taker& use = taker == takers_.end() ? otherwise_ : taker->second;
-  if (use && !use(piece, stored)) ++refused_[piece.kind];
+  if (!use || use(piece, stored)) return;
+  ++refused_[piece.kind];
+  receiver_.refused(piece.robot);
 }
 
 std::uint64_t PieceReader::refused(transfer::Kind kind) const {

@@ -96,14 +96,15 @@ Result<std::size_t> ChunkStore::take_carried(const std::string& carrier, const p
     const auto known = into->blocks.find(update.block.index);
     const bool is_new = known == into->blocks.end();
     const bool replaces_carried = !is_new && known->second.carried != 0;
-    if (!is_new && update.revision <= known->second.revision) continue;
+    const std::uint32_t revision = piece.revision_of(update);
+    if (!is_new && revision <= known->second.revision) continue;
     if (!is_new && !replaces_carried && is_heard(*robot, now)) continue;
     if ((is_new && blocks_ >= params_.max_blocks) ||
         (!replaces_carried && carried_blocks_ >= params_.max_carried_blocks)) {
       ++refused;
       continue;
     }
-    put(*robot, *into, piece.key, update, true);
+    put(*robot, *into, piece.key, {update.block, revision}, true);
     ++newer;
   }
   if (robot != nullptr) robot->carriers.at(carrier).parts += newer;

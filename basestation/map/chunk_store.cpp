@@ -8,6 +8,7 @@
 namespace adit::station {
 namespace {
 
+using perception::BlockIndex;
 using perception::CoarseBlock;
 
 }  // namespace
@@ -83,10 +84,11 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
         complete = false;
         continue;
       }
-    } else if (update.revision <= known->second.revision && known->second.carried == 0) {
+    } else if (piece.level < perception::MapPiece::kFinest ||
+               (update.revision <= known->second.revision && known->second.carried == 0)) {
       continue;
     }
-    put(robots_.at(robot), *into, piece.key, update, false);
+    put(robots_.at(robot), *into, piece.key, {update.block, piece.revision_of(update)}, false);
   }
   return complete;
 }

@@ -69,8 +69,8 @@ class ChunkStore {
 
   explicit ChunkStore(ChunkStoreParams params = {}) : params_(params) {}
 
-  /// Takes a piece's blocks. `robot`: the sender, which must be the one that the piece names. Returns whether
-  /// all of it was taken.
+  /// Takes a piece's blocks, those in voxels of 0.4 m where nothing is. `robot`: the sender, which must be
+  /// the one that the piece names. Returns whether all of it was taken.
   bool take(const std::string& robot, const perception::MapPiece& piece);
   bool take(const std::string& robot, const perception::SubmapPoses& poses);
   /// Counts a piece of that robot, heard at `now`; nothing: from the disk. Returns false if there is no room

@@ -248,14 +248,17 @@ void MapJournal::write() {
   start(batch);
 }
 
-/// Pieces that wait are in the copy of the map, too; they are kept once they are written behind it.
+/// The copy of the map has the pieces that wait, too. Behind it they could not be read, as they may be
+/// changes of what was before them.
 void MapJournal::write_again() {
   auto batch = std::make_shared<Batch>();
   batch->kind = Batch::Kind::replace;
   batch->max_bytes = params_.max_bytes / 2;
-  batch->pack = [start = ended_ == Ended::written ? 0 : start_, pack = copy_map_()] {
+  batch->pack = [start = ended_ != Ended::no ? 0 : start_, pack = copy_map_()] {
     return whole_file(start, pack());
   };
+  batch->pieces = std::exchange(waiting_, {});
+  waiting_bytes_ = 0;
   start(batch);
 }
 

@@ -2,6 +2,7 @@
 #include "core/transfer/receiver.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace adit::transfer {
 namespace {
@@ -48,26 +49,40 @@ bool Receiver::take(const std::string& sender, std::uint32_t session, std::uint3
   return mark(from.receipt, id);
 }
 
+void Receiver::refused(const std::string& sender) {
+  if (const auto found = senders_.find(sender); found != senders_.end()) found->second.news = news_ = true;
+}
+
 std::optional<std::vector<std::pair<std::string, Receipt>>> Receiver::due(Time now, double bandwidth) {
   const bool thin = bandwidth > 0.0 && bandwidth < params_.thin;
   const Duration pause = !news_ ? params_.idle : thin ? params_.slow : params_.fast;
   if (acknowledged_ && now - *acknowledged_ < pause) return std::nullopt;
   acknowledged_ = now;
   std::vector<std::pair<std::string, Receipt>> out;
-  const auto add = [&](bool news) {
+  const auto add = [&](const auto& is_wanted) {
     auto next = senders_.upper_bound(turn_);
     for (std::size_t n = 0; n < senders_.size() && out.size() < params_.max_receipts; ++n, ++next) {
       if (next == senders_.end()) next = senders_.begin();
       auto& [name, sender] = *next;
-      if (sender.news != news || now - sender.heard > kForgotten) continue;
+      if (!is_wanted(sender) || now - sender.heard > kForgotten) continue;
       out.emplace_back(name, sender.receipt);
-      if (news) sender.news = false;
+      sender.again = std::exchange(sender.news, false);
     }
   };
   const auto with_news =
       std::count_if(senders_.begin(), senders_.end(), [](const auto& s) { return s.second.news; });
-  if (with_news == 0) add(false);  // A receipt that was lost is repeated with those while nothing arrives.
-  add(true);
+  if (with_news == 0) {
+    add([](const Sender&) { return true; });  // A receipt that was lost is repeated while nothing arrives.
+  } else {
+    // Or beside others.
+    add([](const Sender& sender) { return sender.news; });
+    if (static_cast<std::size_t>(with_news) <= params_.max_receipts)
+      add([&, sent = out.size()](const Sender& sender) {
+        return sender.again &&
+               std::none_of(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(sent),
+                            [&](const auto& entry) { return &senders_[entry.first] == &sender; });
+      });
+  }
   turn_ = out.size() < params_.max_receipts ? std::string{} : out.back().first;
   news_ = static_cast<std::size_t>(with_news) > params_.max_receipts;
   return out;

@@ -31,6 +31,8 @@ class Receiver {
   /// The receipts to acknowledge now, by sender, for one message; an empty list is sent, too: it shows that
   /// this receiver is there. Nothing: it is not time. `bandwidth`: of the own link, bit/s; 0: unknown.
   std::optional<std::vector<std::pair<std::string, Receipt>>> due(Time now, double bandwidth);
+  /// Notes that a piece could not be used: the sender is to hear soon that it did not arrive.
+  void refused(const std::string& sender);
   /// A sender may not know this receiver yet: the next call of due() after `slow` or `fast` answers.
   void greet() { news_ = true; }
 
@@ -38,6 +40,7 @@ class Receiver {
   struct Sender {
     Receipt receipt{};
     bool news{};
+    bool again{};  ///< Its last receipt went out once, and may have been lost.
     Time heard{};
   };
   ReceiverParams params_;

@@ -32,8 +32,8 @@ class BlockStates {
     return v == Voxel::unknown ? kUnknown : v == Voxel::free ? kKnown : kKnown | kOccupied;
   }
 
-  /// Fills the levels above `finest` from it. kFull then means that all voxels of the finest level are free;
-  /// what is not coded there is not above, either.
+  /// Fills the levels above `finest` from it. kFull then means that all voxels of the finest level are free.
+  /// A voxel with a part that is kNotCoded is kNotCoded, too.
   void fill_above(int finest) {
     for (int level = finest; level > 0; --level) {
       const Level& parts = (*this)[level];

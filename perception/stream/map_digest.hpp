@@ -11,8 +11,8 @@ namespace adit::perception {
 
 /// Sums by which two sides find out where their copies of one robot's map differ, without sending it. Blocks
 /// are sorted by the column of 6.4 x 6.4 m in their submap, and columns into kParts - 1 parts; the last sum
-/// is that of the submaps' poses. Sums do not depend on the order of additions, nor on revisions of blocks: a
-/// block that two sides received in different pieces has different ones.
+/// is that of the submaps' poses. Sums do not depend on the order of additions, nor on revisions of blocks,
+/// as a block that two sides received in different pieces has different revisions.
 struct MapDigest {
   static constexpr std::size_t kParts = 33;
   static constexpr std::size_t kPoses = kParts - 1;

@@ -25,7 +25,7 @@ constexpr std::size_t kHeader = 2;  ///< Version, and kind with the version of t
 constexpr std::size_t kBlocksHeader = 6;  ///< The same, and the checksum.
 constexpr std::uint8_t kBlocksKind = kBlocks | ContextTrees::kVersion << 4;
 constexpr int kLevel = 3;  ///< Higher levels of Zstandard gain less than 1 % on a piece.
-constexpr int kFinestLevel = 2, kCoarsestLevel = 1;
+constexpr int kFinestLevel = MapPiece::kFinest, kCoarsestLevel = 1;
 constexpr double kPositionUnit = 1e-3, kQuaternionUnit = 1e-5;
 constexpr double kMaxPosition = 1e5;  ///< m
 

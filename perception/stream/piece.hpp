@@ -31,11 +31,20 @@ struct BlockUpdate {
   bool operator==(const BlockUpdate&) const = default;
 };
 
-/// Blocks of one submap, at most kMaxPieceBlocks.
+/// Blocks of one submap, at most kMaxPieceBlocks. Those of a lower level than kFinest are for who has nothing
+/// of them, as a piece goes to all stations, of which others may know more: they are stored under
+/// kCoarseRevision, so that any state at the finest level replaces them, in any order.
 struct MapPiece {
+  static constexpr int kFinest = 2;
+  static constexpr std::uint32_t kCoarseRevision = 0;
   SubmapKey key{};
   std::vector<BlockUpdate> blocks{};
-  int level{2};  ///< 2: voxels of 0.2 m; 1: of 0.4 m, all eight parts of one the same.
+  int level{kFinest};  ///< 2: voxels of 0.2 m; 1: of 0.4 m, all eight parts of one the same.
+
+  /// The revision under which a block is stored.
+  std::uint32_t revision_of(const BlockUpdate& update) const {
+    return level < kFinest ? kCoarseRevision : update.revision;
+  }
 };
 
 /// Place of a submap.

@@ -67,7 +67,9 @@ bool CarriedBlocks::take(const perception::MapPiece& piece) {
   const auto submap = number_of(robot, piece.key);
   if (!submap) return false;
   bool complete = true;
-  for (const auto& [block, revision] : piece.blocks) {
+  for (const perception::BlockUpdate& update : piece.blocks) {
+    const perception::CoarseBlock& block = update.block;
+    const std::uint32_t revision = piece.revision_of(update);
     Part& part = robot.parts[MapDigest::part_of(block.index)];
     const Ref ref{*submap, block.index};
     auto known = part.blocks.find(ref);

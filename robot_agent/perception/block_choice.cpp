@@ -150,18 +150,17 @@ void BlockSource::add_unseen(const Peer& peer, Duration wait, Time now, Choice& 
 void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
   if (peer.changed_rests_until && now < *peer.changed_rests_until) return;
   std::size_t looked = 0, added = 0;
-  for (auto it = peer.changed.begin();
-       it != peer.changed.end() && looked < kLookedAt && added < kBlocksInPiece; ++looked) {
-    const Due is_due = due(peer, it->second, params_.hold, 2 * params_.hold, params_.max_hold, now);
-    if (is_due != Due::no) out.add(it->second, is_due == Due::late), ++added;
-    ++it;
+  for (const auto& [change, cell] : peer.changed) {
+    if (looked++ >= kLookedAt || added >= kBlocksInPiece) break;
+    const Due is_due = due(peer, cell, params_.hold, 2 * params_.hold, params_.max_hold, now);
+    if (is_due != Due::no) out.add(cell, is_due == Due::late), ++added;
   }
   if (added == 0) peer.changed_rests_until = now + kRest;
 }
 
 bool BlockSource::is_coarse_first(const Peer& peer, std::size_t max_bytes) const {
   return whole_bytes_ * static_cast<double>(peer.unseen.size()) >
-         static_cast<double>(kCoarsePieces * max_bytes);
+         static_cast<double>(params_.coarse_pieces * max_bytes);
 }
 
 std::vector<BlockSource::Cell> BlockSource::choose_coarse(Peer& peer) {

@@ -38,10 +38,12 @@ void BlockSource::Place::acknowledge(std::uint16_t by) {
     base_by = missed_by = 0;
   }
   base_by |= by;
+  missed_by = static_cast<std::uint16_t>(missed_by & ~by);
 }
 
 void BlockSource::Place::forget(std::uint16_t peer) {
-  for (std::uint16_t* by : {&up_to_date, &had_by, &base_by, &missed_by, &seen_by, &coarse_by})
+  for (std::uint16_t* by :
+       {&up_to_date, &had_by, &base_by, &missed_by, &seen_by, &coarse_by, &coarse_missed_by})
     *by = static_cast<std::uint16_t>(*by & ~peer);
 }
 
@@ -83,8 +85,7 @@ BlockVotes BlockSource::votes_of(const Cell& cell, const Place& place,
   return votes;
 }
 
-void BlockSource::add_missing(Peer& peer, const Cell& cell, Place& place) {
-  if (!place.waits_since) place.waits_since = now_;
+void BlockSource::add_missing(Peer& peer, const Cell& cell, const Place& place) {
   peer.forget(place.change);
   const std::uint64_t has = (place.up_to_date & peer.bit) != 0 ? place.sent_known : 0;
   const bool grows = (halved(place.known) & ~halved(has)) != 0;
@@ -116,6 +117,7 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
       lacked = true;
     }
     if (!lacked) place.waits_since.reset();
+    if (lacked && !place.waits_since) place.waits_since = now_;
   }
   prune(cell);
   if (blocks_.size() > params_.max_blocks) make_room();
@@ -169,6 +171,7 @@ void BlockSource::has(const PeerId& id, const std::set<std::uint32_t>& submaps) 
     }
     place.up_to_date |= peer.bit;
     place.acknowledge(peer.bit);
+    place.waits_since.reset();
     peer.forget(place.change);
   }
 }
@@ -250,7 +253,10 @@ void BlockSource::join(const PeerId& id) {
   Peer& peer = peers_[id];
   peer.bit = 1;
   while ((used & peer.bit) != 0) peer.bit = static_cast<std::uint16_t>(peer.bit << 1);
-  for (auto& [cell, place] : cells_) add_missing(peer, cell, place);
+  for (auto& [cell, place] : cells_) {
+    add_missing(peer, cell, place);
+    if (!place.waits_since) place.waits_since = now_;
+  }
 }
 
 void BlockSource::leave(const PeerId& id) {
@@ -364,11 +370,13 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
     if (found == cells_.end()) continue;
     Place& place = found->second;
     if (flight->second.coarse) {
-      place.coarse_by &= static_cast<std::uint16_t>(~bit);
-      peer->second.coarse_below = UINT64_MAX;
+      if ((place.coarse_missed_by & bit) == 0) place.coarse_by &= static_cast<std::uint16_t>(~bit);
+      place.coarse_missed_by |= bit;
+      peer->second.coarse_below = std::max(peer->second.coarse_below, place.change + 1);
       continue;
     }
     if (place.sent_change != part.change) continue;  // A newer state went out since.
+    if ((place.had_by & bit) != 0) continue;         // It has it from another piece.
     // Once may be an accident; twice: the peer may have another state than is thought here.
     if ((place.missed_by & bit) != 0) place.base_by &= static_cast<std::uint16_t>(~bit);
     place.missed_by |= bit;

@@ -30,6 +30,8 @@ struct BlockSourceParams {
   Duration hold{30s};
   Duration max_hold{180s};
   double fill{0.8};  ///< Part of a piece from which on it is full, [0, 1].
+  /// A station that lacks more than fills so many pieces gets voxels of 0.4 m first.
+  std::size_t coarse_pieces{64};
 };
 
 /// Name and place of a submap. Submaps of one group lie in one lattice of blocks: they move together, and
@@ -54,15 +56,14 @@ struct BlockRegion {
 /// if the merge shows something else. Blocks with voxels of 0.4 m of which a station knows nothing go first,
 /// the newest of them first; every fourth piece is for what changed. Blocks wait until they fill a piece,
 /// within the bounds of BlockSourceParams. While a station is behind by more than kBacklog blocks, those in
-/// the focus go before others, and surfaces before free space; while it is behind by more than kCoarsePieces
-/// pieces, it first gets voxels of 0.4 m of all that it lacks. Of a block whose last state it acknowledged, a
-/// station is sent what changed. All blocks of a piece are of one group. The map outlives the component that
-/// makes it. Submaps are numbered by age.
+/// the focus go before others, and surfaces before free space; while it is behind by more than
+/// `coarse_pieces` pieces, it first gets voxels of 0.4 m of all that it lacks. Of a block whose last state it
+/// acknowledged, a station is sent what changed. All blocks of a piece are of one group. The map outlives the
+/// component that makes it. Submaps are numbered by age.
 class BlockSource final : public transfer::Source {
  public:
   static constexpr std::size_t kMaxPeers = 16;
   static constexpr std::size_t kBacklog = perception::kMaxPieceBlocks;
-  static constexpr std::size_t kCoarsePieces = 64;
 
   explicit BlockSource(BlockSourceParams params) : params_(std::move(params)) {}
 
@@ -149,6 +150,7 @@ class BlockSource final : public transfer::Source {
     std::uint16_t seen_by{};    ///< Bit of each peer that acknowledged any state of it.
     std::uint16_t
         coarse_by{};  ///< Bit of each peer to which it went in voxels of 0.4 m, unless that was lost.
+    std::uint16_t coarse_missed_by{};   ///< Bit of each peer for which that was lost: it is tried once more.
     std::optional<Time> waits_since{};  ///< Since then some peer lacks its present state.
     Time changed{};
 
@@ -173,9 +175,7 @@ class BlockSource final : public transfer::Source {
     std::optional<Time>
         focus_rests_until{};  ///< It lacked nothing of the focus when that was looked at last.
     std::uint64_t coarse_below{
-        UINT64_MAX};      ///< Those of `unseen` with earlier changes go next as coarse ones.
-    bool coarse_found{};  ///< Any of them had to go, since all of them were begun last.
-    bool coarse_done{};
+        UINT64_MAX};  ///< Those of `unseen` with earlier changes go next as coarse ones.
 
     void forget(std::uint64_t change) { unseen.erase(change), changed.erase(change); }
   };
@@ -195,7 +195,7 @@ class BlockSource final : public transfer::Source {
   /// What the merge of these submaps shows of a cell.
   BlockVotes votes_of(const Cell& cell, const Place& place, std::optional<std::uint32_t> without = {}) const;
   /// Notes that a peer lacks the present state of a place.
-  void add_missing(Peer& peer, const Cell& cell, Place& place);
+  static void add_missing(Peer& peer, const Cell& cell, const Place& place);
   /// Notes that the present state of a place went to these peers.
   void note_sent(const Cell& cell, Place& place, std::uint16_t to);
   /// Takes the length of a piece into the mean lengths of blocks.

@@ -49,7 +49,12 @@ MapKeeper::MapKeeper(MapKeeperParams params, std::unique_ptr<MapDisk> disk)
     : params_(std::move(params)),
       disk_(std::move(disk)),
       poses_(params_.robot, Random(params_.seed).fork(1).next()),
-      blocks_({.robot = params_.robot, .start = Random(params_.seed).fork(1).next()}),
+      blocks_([this] {
+        BlockSourceParams blocks = params_.blocks;
+        blocks.robot = params_.robot;
+        blocks.start = Random(params_.seed).fork(1).next();
+        return blocks;
+      }()),
       start_(Random(params_.seed).fork(1).next() & kRandomPart) {}
 
 LoadedMap MapKeeper::load() {

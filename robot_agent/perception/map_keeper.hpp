@@ -26,6 +26,7 @@ struct MapKeeperParams {
   double min_turn{0.087};           ///< The same, rad.
   Duration min_period{1s};          ///< The same while the robot does neither.
   Duration save_period{10s};        ///< Between two writes of the open submap, and of the poses.
+  BlockSourceParams blocks{};       ///< Without the robot's name and start.
 };
 
 /// What a robot knows of its map beside the open submap's grid: the submaps, their blocks at 0.2 m, and what

@@ -244,7 +244,7 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
 void RadioEdge::reach_carriers() {
   Endpoints& e = *endpoints_;
   if (std::exchange(e.reaches_carriers, true)) return;
-  // Errors leave the map with this robot.
+  // After an error the map stays with this robot; it is not tried again.
   (void)e.io.open(e.bulk_to_carriers, topics::kBulk, topics::kCarryPartition);
   (void)e.read(topics::kBulkAck, e.acknowledged, topics::kCarryPartition);
 }

@@ -26,8 +26,8 @@ struct MapBench {
     std::size_t received{};  ///< Blocks, with repeats.
   };
 
-  explicit MapBench(std::string robot = "r1", MapDiskParams disk_params = {})
-      : disk_params_(std::move(disk_params)), name(std::move(robot)) {
+  explicit MapBench(std::string robot = "r1", MapDiskParams disk_params = {}, BlockSourceParams blocks = {})
+      : disk_params_(std::move(disk_params)), block_params_(std::move(blocks)), name(std::move(robot)) {
     restart();
   }
   ~MapBench() {
@@ -42,13 +42,13 @@ struct MapBench {
     keeper.reset();
     MapDiskParams params = disk_params_;
     params.robot = name;
-    keeper =
-        std::make_unique<MapKeeper>(MapKeeperParams{.robot = name, .seed = ++seed, .origin = {0, 0, 0.5}},
-                                    std::make_unique<MapDisk>(params, disk, *strand, nullptr,
-                                                              [this](bool fails, const std::string& text) {
-                                                                failing = fails;
-                                                                reported = text;
-                                                              }));
+    keeper = std::make_unique<MapKeeper>(
+        MapKeeperParams{.robot = name, .seed = ++seed, .origin = {0, 0, 0.5}, .blocks = block_params_},
+        std::make_unique<MapDisk>(params, disk, *strand, nullptr,
+                                  [this](bool fails, const std::string& text) {
+                                    failing = fails;
+                                    reported = text;
+                                  }));
     loaded = keeper->load();
     sender = std::make_unique<transfer::Sender>(
         transfer::SenderParams{.session = static_cast<std::uint32_t>(seed)});
@@ -110,6 +110,7 @@ struct MapBench {
   }
 
   MapDiskParams disk_params_;
+  BlockSourceParams block_params_;
   std::string name;
   VirtualScheduler scheduler{1};
   std::unique_ptr<Runtime> machine{scheduler.machine("r1", 5s)};

@@ -41,6 +41,17 @@ TEST_F(ChunkStoreTest, TheHigherRevisionWinsInAnyOrder) {
   EXPECT_EQ(chunks.blocks(), 1U);
 }
 
+TEST_F(ChunkStoreTest, LargeVoxelsOnlyFillWhatIsNotThere) {
+  EXPECT_TRUE(chunks.take("r1", piece_of(key, {0, 0, 0}, 3, 1, 9)));
+  MapPiece coarse{key, {{{{0, 0, 0}, kAll, 0}, 10}, {{{1, 0, 0}, kAll, 0}, 10}}, 1};
+  EXPECT_TRUE(chunks.take("r1", coarse));
+  const auto& blocks = chunks.robots().at("r1").submaps.at(key).blocks;
+  EXPECT_EQ(blocks.at({0, 0, 0}).known, 3U) << "another station lacks it, this one does not";
+  EXPECT_EQ(blocks.at({1, 0, 0}).known, kAll);
+  EXPECT_TRUE(chunks.take("r1", piece_of(key, {1, 0, 0}, 5, 1, 9))) << "it was sent before, and comes later";
+  EXPECT_EQ(blocks.at({1, 0, 0}).known, 5U);
+}
+
 TEST_F(ChunkStoreTest, AnOlderPoseChangesNothing) {
   EXPECT_TRUE(chunks.take("r1", pose_of(key, Pose3::level({1, 0, 0}, 0), 4)));
   EXPECT_TRUE(chunks.take("r1", pose_of(key, Pose3::level({2, 0, 0}, 0), 3)));

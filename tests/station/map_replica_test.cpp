@@ -244,6 +244,33 @@ TEST_F(MapReplicaTest, AFileAtItsLimitIsWrittenAgainWhileTheStationRuns) {
   EXPECT_EQ(replica->chunks().robots().at("r1").submaps.begin()->second.pose_revision, 2000U);
 }
 
+TEST_F(MapReplicaTest, AFileOfChangesIsWrittenAgainWhileSomeWait) {
+  const MapJournalParams params{.max_bytes = 20'000};
+  restart(params);
+  const std::uint32_t start = replica->start();
+  const perception::SubmapKey key{"r1", 5, 0};
+  const auto find_base = [&](const perception::BlockIndex& index) {
+    return replica->chunks().find(key, index);
+  };
+  for (std::uint32_t n = 1; n <= 1500; ++n) {
+    std::vector<perception::BlockUpdate> blocks;
+    for (int x = 0; x < 30; ++x)
+      if (random.chance(0.4)) blocks.push_back({{{x, 0, 0}, ~0ULL, random.next()}, n});
+    ASSERT_TRUE(take(transfer::Kind::map_blocks,
+                     perception::pack(key, blocks, transfer::kMaxPieceBytes, 2, find_base).bytes)
+                    .ok());
+    if (n % 3 == 0) run(200ms);
+    ASSERT_LE(file_bytes(), params.max_bytes);
+  }
+  run(1s);
+  EXPECT_TRUE(troubles.empty()) << troubles[0];
+  EXPECT_EQ(stored, 1500);
+  const Content before = content();
+  EXPECT_EQ(restart(params), "");
+  EXPECT_EQ(replica->start(), start);
+  EXPECT_EQ(content(), before);
+}
+
 TEST_F(MapReplicaTest, AnEndedStartStaysEndedWhenTheFileIsWrittenAgain) {
   const MapJournalParams params{.max_bytes = 10'000};
   restart(params);

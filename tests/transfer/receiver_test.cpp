@@ -77,6 +77,29 @@ TEST(Receiver, EachOfManySendersHasItsTurn) {
   }
 }
 
+TEST(Receiver, AReceiptGoesOnceMoreBesideThoseOfOthers) {
+  Receiver receiver;
+  ASSERT_TRUE(receiver.due(Time{}, kThin));
+  receiver.take("r1", 5, 1, Time{1s});
+  EXPECT_EQ(receiver.due(Time{2s}, kThin)->size(), 1U);
+  std::vector<std::size_t> with_r1;
+  for (int n = 3; n <= 5; ++n) {
+    receiver.take("r2", 6, static_cast<std::uint32_t>(n), Time{n * 1s});
+    with_r1.push_back(receiver.due(Time{n * 1s}, kThin)->size());
+  }
+  EXPECT_EQ(with_r1, (std::vector<std::size_t>{2, 1, 1}));
+}
+
+TEST(Receiver, ARefusedPieceIsReportedSoon) {
+  Receiver receiver;
+  receiver.take("r1", 5, 1, Time{});
+  ASSERT_TRUE(receiver.due(Time{}, kThin));
+  EXPECT_FALSE(receiver.due(Time{1s}, kThin));
+  receiver.refused("r1");
+  receiver.refused("r9");
+  EXPECT_EQ(receiver.due(Time{1s}, kThin)->size(), 1U);
+}
+
 TEST(Receiver, AnotherSessionBeginsAnew) {
   Receiver receiver;
   receiver.take("r1", 5, 90, Time{});
