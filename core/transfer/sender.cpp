@@ -2,14 +2,11 @@
 #include "core/transfer/sender.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace adit::transfer {
 namespace {
 
-/// A piece that is so many ids older than the newest one that arrived was lost, not overtaken, unless it was
-/// sent just now: at once four go out, and a station stores different content at different speeds.
-constexpr std::uint32_t kOvertaken = 4;
+constexpr Duration kTwoAcknowledgements = 2500ms;  // On a thin link, see ReceiverParams; one may be lost.
 
 }  // namespace
 
@@ -66,6 +63,7 @@ Sender::Peer* Sender::admit(const Ack& ack, Time now) {
   peer.earlier.push_back(peer.start);
   if (peer.earlier.size() > kStarts) peer.earlier.pop_front();
   peer.start = ack.start;
+  peer.named = false;
   for (Flight& flight : flights_) std::erase(flight.awaited, ack.peer);
   join(ack);
   return &peer;
@@ -74,8 +72,10 @@ Sender::Peer* Sender::admit(const Ack& ack, Time now) {
 bool Sender::acknowledged(const Ack& ack, Time now) {
   if (admit(ack, now) == nullptr) return false;
   if (!ack.carrier) station_heard_ = now;
-  if (ack.receipt.session == params_.session && ack.receipt.newest <= last_id_)
+  if (ack.receipt.session == params_.session && ack.receipt.newest <= last_id_) {
+    peers_.at(ack.peer).named = true;
     settle(ack.peer, ack.receipt, now);
+  }
   return true;
 }
 
@@ -87,8 +87,7 @@ void Sender::settle(const PeerId& peer, const Receipt& receipt, Time now) {
       measure(now - flight.sent);
       flight.source->acknowledged(peer, flight.token);
       pacer_.settled(true);
-    } else if (now - flight.sent >= timeout() ||
-               (receipt.newest >= flight.id + kOvertaken && now - flight.sent >= params_.min_timeout / 2)) {
+    } else if (now - flight.sent >= due_within()) {
       flight.source->lost(peer, flight.token);
       pacer_.settled(false);
     } else {
@@ -100,36 +99,39 @@ void Sender::settle(const PeerId& peer, const Receipt& receipt, Time now) {
 }
 
 void Sender::expire(Time now) {
+  const Duration limit = timeout();
   for (Flight& flight : flights_) {
-    if (now - flight.sent >= params_.max_timeout) {
-      for (const PeerId& peer : flight.awaited) {
-        flight.source->lost(peer, flight.token);
-        // A peer that is not heard at all says nothing about the rate at which it should be sent to.
-        const auto heard = peers_.find(peer);
-        if (heard != peers_.end() && heard->second.heard > flight.sent) pacer_.settled(false);
-      }
-      flight.awaited.clear();
-    }
+    std::erase_if(flight.awaited, [&](const PeerId& id) {
+      const auto peer = peers_.find(id);
+      // Acknowledgements of a peer to which nothing came yet do not name this sender.
+      const bool named = peer == peers_.end() || peer->second.named;
+      if (now - flight.sent < (named ? limit : std::min<Duration>(limit, params_.unnamed))) return false;
+      flight.source->lost(id, flight.token);
+      // A peer that is not heard at all says nothing about the rate at which it should be sent to.
+      if (peer != peers_.end() && peer->second.heard > flight.sent) pacer_.settled(false);
+      return true;
+    });
     if (flight.awaited.empty()) flight.source->settled(flight.token);
   }
   std::erase_if(flights_, [](const Flight& flight) { return flight.awaited.empty(); });
 }
 
 void Sender::measure(Duration delay) {
+  // Acknowledgements wait for others at the peer: the shortest delay is the link's.
   const double sample = seconds(delay);
-  if (!measured_) {
-    delay_ = sample;
-    deviation_ = sample / 2;
-  } else {
-    deviation_ += (std::abs(sample - delay_) - deviation_) / 4;
-    delay_ += (sample - delay_) / 8;
-  }
-  measured_ = true;
+  least_delay_ =
+      !least_delay_ || sample < *least_delay_ ? sample : *least_delay_ + (sample - *least_delay_) / 16;
+}
+
+Duration Sender::due_within() const {
+  if (!least_delay_) return params_.min_timeout / 2;
+  return std::clamp(from_seconds(1.5 * *least_delay_), params_.min_timeout / 4, params_.max_timeout);
 }
 
 Duration Sender::timeout() const {
-  if (!measured_) return std::min<Duration>(2 * params_.min_timeout, params_.max_timeout);
-  return std::clamp(from_seconds(delay_ + 4 * deviation_), params_.min_timeout, params_.max_timeout);
+  if (!least_delay_) return params_.min_timeout;
+  return std::clamp(kTwoAcknowledgements + from_seconds(2 * *least_delay_), params_.min_timeout,
+                    params_.max_timeout);
 }
 
 std::vector<PeerId> Sender::served(const Source& source, Time now) const {

@@ -19,17 +19,19 @@ struct SenderParams {
       15s};  ///< Carriers are sent to once no station acknowledged for this long, >= silence.
   Duration min_rejoin{
       2s};  ///< Shortest time between two starts of a peer, as each costs a round over all content.
-  Duration min_timeout{1500ms};  ///< Bounds of the time after which a piece counts as lost.
+  /// Bounds of the time after which a piece counts as lost if no acknowledgement has anything of its session.
+  Duration min_timeout{3s};
   Duration max_timeout{8s};
+  Duration unnamed{2s};           ///< The same for a peer to which nothing came yet.
   std::size_t pieces_at_once{4};  ///< Largest number of pieces of one call of due().
   PacerParams pacing{};
 };
 
 /// Sends the content of its sources to every peer that acknowledges, as the link allows. A piece goes to all
 /// peers at once and is chosen for the one that lacks most. A piece counts as lost when an acknowledgement
-/// without it comes after a time measured from the delay of acknowledgements (as RFC 6298 does), or none for
-/// `max_timeout`: acknowledgements are lost, too. Its content is missing again, and the source gives its
-/// newest state later.
+/// comes that ought to have it and does not, or when two could have come: acknowledgements are lost, too, and
+/// name only senders of which something arrived.
+/// Its content is missing again, and the source gives its newest state later.
 ///
 /// Carriers, robots that take content on to stations, are peers for content that is for them. As each peer
 /// costs a copy on the air, they are sent to only while no station is heard. A station takes a carrier's slot
@@ -56,8 +58,6 @@ class Sender {
     return station_heard_ && now - *station_heard_ >= params_.station_silence;
   }
   std::size_t in_flight() const { return flights_.size(); }
-  /// Time after which an acknowledgement that does not have a piece says that it was lost.
-  Duration timeout() const;
 
  private:
   static constexpr std::size_t kStarts = 4;  ///< Earlier starts of a peer that are remembered.
@@ -67,6 +67,7 @@ class Sender {
     Time heard{};
     Time joined{};  ///< When its present start was taken.
     bool carrier{false};
+    bool named{false};  ///< It acknowledged a piece, so that its acknowledgements name this sender.
   };
   /// A piece on its way.
   struct Flight {
@@ -87,6 +88,10 @@ class Sender {
   void settle(const PeerId& peer, const Receipt& receipt, Time now);
   void expire(Time now);
   void measure(Duration delay);
+  /// Time after which an acknowledgement ought to have a piece: 1.5 times the shortest delay.
+  Duration due_within() const;
+  /// Time after which two acknowledgements ought to have come.
+  Duration timeout() const;
   /// Peers to send to, those that lack most of the source's content first; none if no one lacks any.
   std::vector<PeerId> served(const Source& source, Time now) const;
   /// Parts of all sources that the peer that lacks most lacks.
@@ -99,8 +104,7 @@ class Sender {
   std::deque<Flight> flights_{};
   std::optional<Time> station_heard_{};  ///< A station acknowledged; at first: when this sender began.
   std::uint32_t last_id_{};
-  bool measured_{};
-  double delay_{}, deviation_{};  ///< Of acknowledgements, s.
+  std::optional<double> least_delay_{};  ///< Of acknowledgements, s; it follows longer ones slowly.
 };
 
 }  // namespace adit::transfer
