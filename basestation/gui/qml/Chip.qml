@@ -9,7 +9,8 @@ Rectangle {
     property string shape
     property color fill: Theme.none
 
-    implicitWidth: row.implicitWidth + 2.4 * Theme.mm
+    // Of the text itself: the width of the row follows the chip's.
+    implicitWidth: label.implicitWidth + (shape === "" ? 2.4 : 6.8) * Theme.mm
     implicitHeight: 5 * Theme.mm
     radius: 0.8 * Theme.mm
     color: fill
@@ -17,7 +18,6 @@ Rectangle {
     border.color: Theme.ink
 
     Row {
-        id: row
         anchors.centerIn: parent
         width: Math.min(implicitWidth, chip.width - 1.6 * Theme.mm)
         spacing: 1 * Theme.mm
@@ -31,6 +31,7 @@ Rectangle {
             anchors.verticalCenter: parent.verticalCenter
         }
         PlainLabel {
+            id: label
             text: chip.text
             color: Theme.ink
             font.bold: true
