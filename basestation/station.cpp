@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/station.hpp"
-#include "basestation/content/convert.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "core/command/parse.hpp"
 #include "core/command/vocabulary.hpp"
 #include "core/command/words.hpp"
+#include "core/transfer/receipt_message.hpp"
 #include "core/wire/typed.hpp"
 
 namespace adit::station {
@@ -30,6 +30,13 @@ constexpr std::size_t kMaxReportTopics = 16;
 constexpr Duration kCarrierHeard = 30s;
 constexpr Duration kLookHolds = 5s;      // Front ends say every second what they show.
 constexpr std::uint64_t kStartSalt = 1;  // Beside the sequence of the phases.
+
+radio::BulkDigest to_radio(const transfer::ContentDigest& digest) {
+  radio::BulkDigest out;
+  out.robot(digest.robot);
+  out.parts(digest.parts);
+  return out;
+}
 }  // namespace
 
 struct Station::Impl::Radio {
@@ -194,7 +201,8 @@ void Station::Impl::acknowledge_pieces() {
   ack.station(params_.name);
   ack.station_id(params_.id);
   ack.start(map_.start());
-  for (const auto& [robot, receipt] : *receipts) ack.receipts().push_back(to_radio(robot, receipt));
+  for (const auto& [robot, receipt] : *receipts)
+    ack.receipts().push_back(transfer::to_message<radio::BulkReceipt>(robot, receipt));
   if (look_ && strand_.now() - looked_ < kLookHolds)
     ack.look({static_cast<float>(look_->x), static_cast<float>(look_->y), static_cast<float>(look_->radius)});
   if (const auto digests = carrier_heard()

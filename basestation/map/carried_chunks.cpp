@@ -86,52 +86,52 @@ ChunkStore::Robot* ChunkStore::count_carried(const std::string& carrier, const s
   return &from;
 }
 
-Result<std::size_t> ChunkStore::take_carried(const std::string& carrier, const perception::MapPiece& piece,
-                                             std::size_t bytes, std::optional<Time> now) {
+bool ChunkStore::note_carried(Robot* robot, const std::string& carrier, std::size_t newer,
+                              std::size_t refused) {
+  if (robot != nullptr) robot->carriers.at(carrier).parts += newer;
+  refused_carried_ += refused;
+  return refused == 0;
+}
+
+bool ChunkStore::take_carried(const std::string& carrier, perception::MapPiece& piece, std::size_t bytes,
+                              std::optional<Time> now) {
   Robot* robot = count_carried(carrier, piece.key.robot, bytes, now);
   Submap* into = robot != nullptr ? submap(piece.key.robot, piece.key) : nullptr;
-  std::size_t newer = 0, refused = into != nullptr ? 0 : piece.blocks.size();
-  for (std::size_t i = 0; into != nullptr && i < piece.blocks.size(); ++i) {
-    const perception::BlockUpdate& update = piece.blocks[i];
+  std::size_t refused = into != nullptr ? 0 : piece.blocks.size();
+  std::erase_if(piece.blocks, [&](const perception::BlockUpdate& update) {
+    if (into == nullptr) return true;
     const auto known = into->blocks.find(update.block.index);
     const bool is_new = known == into->blocks.end();
     const bool replaces_carried = !is_new && known->second.carried != 0;
     const std::uint32_t revision = piece.revision_of(update);
-    if (!is_new && revision <= known->second.revision) continue;
-    if (!is_new && !replaces_carried && is_heard(*robot, now)) continue;
+    if (!is_new && revision <= known->second.revision) return true;
+    if (!is_new && !replaces_carried && is_heard(*robot, now)) return true;
     if ((is_new && blocks_ >= params_.max_blocks) ||
         (!replaces_carried && carried_blocks_ >= params_.max_carried_blocks)) {
       ++refused;
-      continue;
+      return true;
     }
     put(*robot, *into, piece.key, {update.block, revision}, true);
-    ++newer;
-  }
-  if (robot != nullptr) robot->carriers.at(carrier).parts += newer;
-  refused_carried_ += refused;
-  if (refused > 0) return Error{Reason::queue_full, "no room for more of the maps that robots carry"};
-  return newer;
+    return false;
+  });
+  return note_carried(robot, carrier, piece.blocks.size(), refused);
 }
 
-Result<std::size_t> ChunkStore::take_carried(const std::string& carrier, const perception::SubmapPoses& poses,
-                                             std::size_t bytes, std::optional<Time> now) {
-  const std::string& name = poses.poses.front().key.robot;
+bool ChunkStore::take_carried(const std::string& carrier, perception::SubmapPoses& poses, std::size_t bytes,
+                              std::optional<Time> now) {
+  const std::string name = poses.poses.front().key.robot;
   Robot* robot = count_carried(carrier, name, bytes, now);
-  std::size_t newer = 0, refused = 0;
-  for (const perception::SubmapPose& pose : poses.poses) {
+  std::size_t refused = 0;
+  std::erase_if(poses.poses, [&](const perception::SubmapPose& pose) {
     Submap* into = robot != nullptr ? submap(name, pose.key) : nullptr;
-    if (into == nullptr) {
-      ++refused;
-    } else if (!into->T_map_submap ||
-               (pose.revision > into->pose_revision && (into->pose_carried || !is_heard(*robot, now)))) {
-      put(*robot, *into, pose, true);
-      ++newer;
-    }
-  }
-  if (robot != nullptr) robot->carriers.at(carrier).parts += newer;
-  refused_carried_ += refused;
-  if (refused > 0) return Error{Reason::queue_full, "no room for more of the maps that robots carry"};
-  return newer;
+    refused += into == nullptr ? 1 : 0;
+    if (into == nullptr || (into->T_map_submap && (pose.revision <= into->pose_revision ||
+                                                   (!into->pose_carried && is_heard(*robot, now)))))
+      return true;
+    put(*robot, *into, pose, true);
+    return false;
+  });
+  return note_carried(robot, carrier, poses.poses.size(), refused);
 }
 
 }  // namespace adit::station

@@ -22,13 +22,18 @@ ChunkStore::Submap* ChunkStore::submap(const std::string& robot, const perceptio
   return &submaps[key];
 }
 
-std::optional<CoarseBlock> ChunkStore::find(const perception::SubmapKey& key, const BlockIndex& index) const {
+const ChunkStore::Submap* ChunkStore::find(const perception::SubmapKey& key) const {
   const auto robot = robots_.find(key.robot);
-  if (robot == robots_.end()) return std::nullopt;
+  if (robot == robots_.end()) return nullptr;
   const auto submap = robot->second.submaps.find(key);
-  if (submap == robot->second.submaps.end()) return std::nullopt;
-  const auto block = submap->second.blocks.find(index);
-  if (block == submap->second.blocks.end()) return std::nullopt;
+  return submap != robot->second.submaps.end() ? &submap->second : nullptr;
+}
+
+std::optional<CoarseBlock> ChunkStore::find(const perception::SubmapKey& key, const BlockIndex& index) const {
+  const Submap* submap = find(key);
+  if (submap == nullptr) return std::nullopt;
+  const auto block = submap->blocks.find(index);
+  if (block == submap->blocks.end()) return std::nullopt;
   return CoarseBlock{index, block->second.known, block->second.occupied};
 }
 

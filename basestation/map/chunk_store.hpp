@@ -77,6 +77,8 @@ class ChunkStore {
   /// for one more robot.
   bool count(const std::string& robot, std::size_t bytes, std::uint32_t waiting, std::optional<Time> now);
 
+  /// Null: nothing of it is here.
+  const Submap* find(const perception::SubmapKey& key) const;
   /// The stored state of a block; nothing: it is not here.
   std::optional<perception::CoarseBlock> find(const perception::SubmapKey& key,
                                               const perception::BlockIndex& index) const;
@@ -84,12 +86,12 @@ class ChunkStore {
   // Defined in carried_chunks.cpp.
 
   /// Takes what `carrier` sent of another robot's map, which the content names, heard at `now` (nothing: from
-  /// the disk). Returns how many parts were newer. Errors: queue_full (there is no room for some of it).
-  Result<std::size_t> take_carried(const std::string& carrier, const perception::MapPiece& piece,
-                                   std::size_t bytes, std::optional<Time> now);
+  /// the disk), and leaves in it what was newer. Returns whether there was room for all of it.
+  bool take_carried(const std::string& carrier, perception::MapPiece& piece, std::size_t bytes,
+                    std::optional<Time> now);
   /// All poses must be of one robot, and at least one.
-  Result<std::size_t> take_carried(const std::string& carrier, const perception::SubmapPoses& poses,
-                                   std::size_t bytes, std::optional<Time> now);
+  bool take_carried(const std::string& carrier, perception::SubmapPoses& poses, std::size_t bytes,
+                    std::optional<Time> now);
   /// Notes how many parts a robot has still to send, if anything came from it.
   void note_waiting(const std::string& robot, std::uint32_t waiting);
   /// Age of a block by the clock of this station; nothing: unknown.
@@ -125,6 +127,8 @@ class ChunkStore {
   /// The robot of a carried piece, and its carrier's count. Null: no room.
   Robot* count_carried(const std::string& carrier, const std::string& robot, std::size_t bytes,
                        std::optional<Time> now);
+  /// Counts what came of a carrier's piece. Returns whether nothing was refused.
+  bool note_carried(Robot* robot, const std::string& carrier, std::size_t newer, std::size_t refused);
   void set_now(std::optional<Time> now);
 
   ChunkStoreParams params_;

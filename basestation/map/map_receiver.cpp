@@ -45,42 +45,52 @@ Result<void> MapReceiver::restore(const std::string& robot, std::uint8_t kind,
                                   std::span<const std::uint8_t> data) {
   if (transfer::is_carried(kind)) {
     // The robot that it is of does not count on it, so what does not fit is no loss.
-    const auto carried = take_carried(robot, kind, 0, data, std::nullopt);
-    if (!carried && carried.reason() != Reason::queue_full) return carried.error();
-    return {};
+    Result<void> taken = take_carried(robot, kind, 0, data, std::nullopt).taken;
+    return !taken && taken.reason() == Reason::queue_full ? Result<void>() : taken;
   }
   if (!chunks_.count(robot, data.size(), 0, std::nullopt))
     return {Reason::queue_full, "no room for one more robot's map"};
   return store(robot, kind, data);
 }
 
-Result<bool> MapReceiver::take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
-                                       std::span<const std::uint8_t> data, std::optional<Time> now) {
-  chunks_.note_waiting(carrier, waiting);
-  const auto refuse = [this](const Error& error) {
-    ++refused_;
-    return error;
-  };
+MapReceiver::Carried MapReceiver::store_carried(const std::string& carrier, std::uint8_t kind,
+                                                std::span<const std::uint8_t> data, std::optional<Time> now) {
   if (data.size() > transfer::kMaxPieceBytes)
-    return refuse({Reason::malformed, "a piece is longer than any robot sends"});
-  Result<std::size_t> newer = std::size_t{0};
+    return {{Reason::malformed, "a piece is longer than any robot sends"}, {}};
+  const auto is_other = [&](const std::string& robot) {
+    return robot != carrier && command::valid_name(robot);
+  };
+  Carried out;
+  const auto note = [&out](bool complete) {
+    if (!complete) out.taken = {Reason::queue_full, "no room for more of the maps that robots carry"};
+  };
   if (kind == static_cast<std::uint8_t>(transfer::Kind::carried_blocks)) {
-    const auto piece = perception::decode(data);
-    if (!piece) return refuse(piece.error());
-    if (piece->key.robot == carrier || !command::valid_name(piece->key.robot))
-      return refuse({Reason::malformed, "a carried piece that names no other robot"});
-    newer = chunks_.take_carried(carrier, *piece, data.size(), now);
-  } else {
-    const auto poses = perception::decode_poses(data);
-    if (!poses) return refuse(poses.error());
-    for (const perception::SubmapPose& pose : poses->poses)
-      if (pose.key.robot == carrier || pose.key.robot != poses->poses.front().key.robot ||
-          !command::valid_name(pose.key.robot))
-        return refuse({Reason::malformed, "carried poses that name no other robot, or several"});
-    if (!poses->poses.empty()) newer = chunks_.take_carried(carrier, *poses, data.size(), now);
+    auto piece = perception::decode(data);
+    if (!piece) return {piece.error(), {}};
+    if (!is_other(piece->key.robot))
+      return {{Reason::malformed, "a carried piece that names no other robot"}, {}};
+    note(chunks_.take_carried(carrier, *piece, data.size(), now));
+    if (!piece->blocks.empty()) out.newer = perception::encode(*piece);
+    return out;
   }
-  if (!newer) return refuse(newer.error());
-  return *newer > 0;
+  auto poses = perception::decode_poses(data);
+  if (!poses) return {poses.error(), {}};
+  if (poses->poses.empty()) return out;
+  for (const perception::SubmapPose& pose : poses->poses)
+    if (!is_other(pose.key.robot) || pose.key.robot != poses->poses.front().key.robot)
+      return {{Reason::malformed, "carried poses that name no other robot, or several"}, {}};
+  note(chunks_.take_carried(carrier, *poses, data.size(), now));
+  if (!poses->poses.empty()) out.newer = perception::encode(*poses);
+  return out;
+}
+
+MapReceiver::Carried MapReceiver::take_carried(const std::string& carrier, std::uint8_t kind,
+                                               std::uint32_t waiting, std::span<const std::uint8_t> data,
+                                               std::optional<Time> now) {
+  chunks_.note_waiting(carrier, waiting);
+  Carried carried = store_carried(carrier, kind, data, now);
+  if (!carried.taken) ++refused_;
+  return carried;
 }
 
 }  // namespace adit::station

@@ -95,10 +95,8 @@ Result<void> MapReplica::take(const std::string& robot, std::uint8_t kind, std::
   if (taken) {
     written_.insert(robot);
     journal_.add({robot, kind, {data.begin(), data.end()}}, std::move(stored));
-  } else if (taken.reason() != Reason::malformed && taken.reason() != Reason::out_of_range) {
-    // What does not fit, or will never be understood, would come again without end. Perhaps the next process
-    // understands it, or has room.
-    journal_.end_start(std::move(stored));
+  } else if (transfer::is_acknowledged(taken.reason())) {
+    journal_.end_start(std::move(stored));  // Perhaps the next process understands it, or has room.
   }
   return taken;
 }
@@ -114,46 +112,15 @@ void MapReplica::forget_evicted() {
   });
 }
 
-/// What of a carried piece is here now, as a piece: only that is written, as the reader of the file cannot
-/// know which robots were heard. Empty: nothing.
-store::Bytes MapReplica::accepted(std::uint8_t kind, std::span<const std::uint8_t> data) const {
-  const auto submap_of = [this](const perception::SubmapKey& key) -> const ChunkStore::Submap* {
-    const auto robot = chunks().robots().find(key.robot);
-    if (robot == chunks().robots().end()) return nullptr;
-    const auto submap = robot->second.submaps.find(key);
-    return submap != robot->second.submaps.end() ? &submap->second : nullptr;
-  };
-  if (kind == static_cast<std::uint8_t>(transfer::Kind::carried_blocks)) {
-    auto piece = perception::decode(data);
-    const auto* submap = piece ? submap_of(piece->key) : nullptr;
-    if (submap == nullptr) return {};
-    std::erase_if(piece->blocks, [&](const perception::BlockUpdate& update) {
-      const auto block = submap->blocks.find(update.block.index);
-      return block == submap->blocks.end() || block->second.carried == 0 ||
-             block->second.revision != piece->revision_of(update);
-    });
-    return piece->blocks.empty() ? store::Bytes{} : perception::encode(*piece);
-  }
-  auto poses = perception::decode_poses(data);
-  if (!poses) return {};
-  std::erase_if(poses->poses, [&](const perception::SubmapPose& pose) {
-    const auto* submap = submap_of(pose.key);
-    return submap == nullptr || !submap->pose_carried || submap->pose_revision != pose.revision;
-  });
-  return poses->poses.empty() ? store::Bytes{} : perception::encode(*poses);
-}
-
 Result<void> MapReplica::take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
                                       std::span<const std::uint8_t> data, std::function<void()> stored) {
-  const Result<bool> newer = receiver_.take_carried(carrier, kind, waiting, data, home_.now());
-  const bool malformed = !newer && newer.reason() == Reason::malformed;
-  store::Bytes kept = malformed || (newer && !*newer) ? store::Bytes{} : accepted(kind, data);
-  if (!kept.empty())
-    journal_.add({carrier, kind, std::move(kept)}, std::move(stored));
-  else if (!malformed)
-    stored();  // It is here already, or would come again without end.
-  if (!newer) return newer.error();
-  return {};
+  MapReceiver::Carried carried = receiver_.take_carried(carrier, kind, waiting, data, home_.now());
+  // Only what was stored is written, as the reader of the file cannot know which robots were heard.
+  if (!carried.newer.empty())
+    journal_.add({carrier, kind, std::move(carried.newer)}, std::move(stored));
+  else if (carried.taken || transfer::is_acknowledged(carried.taken.reason()))
+    stored();
+  return carried.taken;
 }
 
 void MapReplica::forget(std::uint32_t start) {

@@ -34,7 +34,6 @@ class MapReplica {
 
  private:
   void forget_evicted();
-  store::Bytes accepted(std::uint8_t kind, std::span<const std::uint8_t> data) const;
   Result<void> take_carried(const std::string& carrier, std::uint8_t kind, std::uint32_t waiting,
                             std::span<const std::uint8_t> data, std::function<void()> stored);
 

@@ -3,11 +3,11 @@
 #include <set>
 
 #include "adit/bulk.h"
-#include "basestation/content/convert.hpp"
 #include "basestation/map/map_receiver.hpp"
 #include "basestation/map/merged_map.hpp"
 #include "bench/map_link/counted_source.hpp"
 #include "bench/map_link/rule.hpp"
+#include "core/transfer/receipt_message.hpp"
 #include "core/transfer/receiver.hpp"
 #include "core/transfer/sender.hpp"
 #include "core/wire/typed.hpp"
@@ -178,7 +178,7 @@ class AditRule final : public Rule {
     message.station("base");
     message.start(1);
     for (const auto& [robot, receipt] : *receipts)
-      message.receipts().push_back(station::to_radio(robot, receipt));
+      message.receipts().push_back(transfer::to_message<radio::BulkReceipt>(robot, receipt));
     wire::encode(message, buffer_);
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       transfer::Ack ack{kStation, 1, {}};

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/result/reason.hpp"
+
 namespace adit::transfer {
 
 /// Kind of content; the values travel on the wire.
@@ -39,6 +41,13 @@ struct Piece {
   std::vector<std::uint8_t> data{};
   bool for_carriers{false};  ///< For robots that carry it on to stations; else for the stations.
 };
+
+/// Whether a piece that was refused for this reason is acknowledged: what does not fit, or will never be
+/// understood, would come again without end. A piece that is damaged, or whose base is missing, is not: its
+/// content comes in another one.
+constexpr bool is_acknowledged(Reason refused_for) {
+  return refused_for != Reason::malformed && refused_for != Reason::out_of_range;
+}
 
 /// The pieces of one session of a sender that arrived at a peer.
 struct Receipt {

@@ -66,6 +66,7 @@ std::optional<std::vector<std::pair<std::string, Receipt>>> Receiver::due(Time n
       auto& [name, sender] = *next;
       if (!is_wanted(sender) || now - sender.heard > kForgotten) continue;
       out.emplace_back(name, sender.receipt);
+      sender.acknowledged = now;
       sender.again = std::exchange(sender.news, false);
     }
   };
@@ -77,11 +78,7 @@ std::optional<std::vector<std::pair<std::string, Receipt>>> Receiver::due(Time n
     // Or beside others.
     add([](const Sender& sender) { return sender.news; });
     if (static_cast<std::size_t>(with_news) <= params_.max_receipts)
-      add([&, sent = out.size()](const Sender& sender) {
-        return sender.again &&
-               std::none_of(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(sent),
-                            [&](const auto& entry) { return &senders_[entry.first] == &sender; });
-      });
+      add([now](const Sender& sender) { return sender.again && sender.acknowledged != now; });
   }
   turn_ = out.size() < params_.max_receipts ? std::string{} : out.back().first;
   news_ = static_cast<std::size_t>(with_news) > params_.max_receipts;

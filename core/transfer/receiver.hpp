@@ -42,6 +42,7 @@ class Receiver {
     bool news{};
     bool again{};  ///< Its last receipt went out once, and may have been lost.
     Time heard{};
+    std::optional<Time> acknowledged{};
   };
   ReceiverParams params_;
   std::map<std::string, Sender> senders_{};

@@ -30,8 +30,8 @@ struct SenderParams {
 /// Sends the content of its sources to every peer that acknowledges, as the link allows. A piece goes to all
 /// peers at once and is chosen for the one that lacks most. A piece counts as lost when an acknowledgement
 /// comes that ought to have it and does not, or when two could have come: acknowledgements are lost, too, and
-/// name only senders of which something arrived.
-/// Its content is missing again, and the source gives its newest state later.
+/// name only senders of which something arrived. Its content is missing again, and the source gives its
+/// newest state later.
 ///
 /// Carriers, robots that take content on to stations, are peers for content that is for them. As each peer
 /// costs a copy on the air, they are sent to only while no station is heard. A station takes a carrier's slot
@@ -45,8 +45,7 @@ class Sender {
   /// Adds a source; those added first go first.
   void add(Source& source) { sources_.push_back(&source); }
   /// Takes an acknowledgement, genuine or not: it must come from a known station, or a known robot that says
-  /// that it is a carrier.
-  /// Returns whether it is of the peer's present start.
+  /// that it is a carrier. Returns whether it is of the peer's present start.
   bool acknowledged(const Ack& ack, Time now);
   /// The pieces to send now. Call it at 10 to 50 Hz.
   std::vector<Piece> due(Time now, const wire::SenderState& link);

@@ -208,18 +208,25 @@ class BlockWalk {
     return kSteps[static_cast<std::size_t>(level)][static_cast<std::size_t>(octant)];
   }
 
+  /// Surroundings of a voxel at `at` of the padded level, the `octant`-th part of the one at `parent` of the
+  /// padded level above; level 0 has none above.
+  VoxelContext context_at(int level, std::size_t at, int octant, std::size_t parent, bool has_base) const {
+    const bool top = level == 0;
+    return {&fine_[at],
+            &steps_at(level, 7),
+            top ? &none_[13] : &coarse_[parent],
+            top ? &steps_at(0, 7) : &steps_at(level - 1, octant),
+            octant,
+            level_,
+            has_base ? &base_fine_[at] : nullptr,
+            has_base && !top ? &base_coarse_[parent] : nullptr};
+  }
+
   void walk_block(std::size_t block) {
     coder_.begin(block);
     pad(coded_, 0, block, fine_);
     if (has_base_[block]) pad(base_, 0, block, base_fine_);
-    const VoxelContext context{&fine_[13],
-                               &steps_at(0, 7),
-                               &none_[13],
-                               &steps_at(0, 7),
-                               0,
-                               level_,
-                               has_base_[block] ? &base_fine_[13] : nullptr,
-                               nullptr};
+    const VoxelContext context = context_at(0, in_padded(0, 0), 0, 0, has_base_[block]);
     const std::uint8_t is = truth(0, block);
     std::uint8_t& state = coded_[0][block];
     state = kUnknown;
@@ -259,14 +266,7 @@ class BlockWalk {
       const std::size_t at = in_padded(voxel, above);
       const int octant = above > 0 ? octant_of(voxel, above) : 0;
       const std::size_t parent = above > 0 ? in_padded(parent_of(voxel, above), above - 1) : 0;
-      const VoxelContext context{&fine_[at],
-                                 &steps_at(above, 7),
-                                 above > 0 ? &coarse_[parent] : &none_[13],
-                                 above > 0 ? &steps_at(above - 1, octant) : &steps_at(0, 7),
-                                 octant,
-                                 level_,
-                                 has_base ? &base_fine_[at] : nullptr,
-                                 has_base && above > 0 ? &base_coarse_[parent] : nullptr};
+      const VoxelContext context = context_at(above, at, octant, parent, has_base);
       if (!coder_.decide(decision_of(block, decision_at(all_parts_known, level)), context,
                          is_full(above, block, voxel)))
         continue;
@@ -304,14 +304,7 @@ class BlockWalk {
         if ((whole & kFull) != 0) {
           state = kKnown;
         } else if ((whole & kKnown) != 0) {
-          const VoxelContext context{&fine_[at],
-                                     &steps_at(level, 7),
-                                     &coarse_[above],
-                                     &steps_at(level - 1, child),
-                                     child,
-                                     level_,
-                                     has_base ? &base_fine_[at] : nullptr,
-                                     has_base ? &base_coarse_[above] : nullptr};
+          const VoxelContext context = context_at(level, at, child, above, has_base);
           const bool last = child == 7, had = is_known_in_base(block, level, voxel);
           if ((whole & kOccupied) == 0) {
             // Some part is known, and if the level above could say that all are, not all of them.

@@ -45,20 +45,19 @@ std::optional<perception::CoarseBlock> CarriedBlocks::find(const perception::Sub
                                                            const perception::BlockIndex& index) const {
   const auto robot = robots_.find(key.robot);
   if (robot == robots_.end()) return std::nullopt;
-  const auto& submaps = robot->second.submaps;
-  const auto submap = std::find(submaps.begin(), submaps.end(), key);
+  const auto submap = robot->second.numbers.find(key);
+  if (submap == robot->second.numbers.end()) return std::nullopt;
   const auto& blocks = robot->second.parts[MapDigest::part_of(index)].blocks;
-  const auto block = blocks.find({static_cast<std::size_t>(submap - submaps.begin()), index});
+  const auto block = blocks.find({submap->second, index});
   if (block == blocks.end()) return std::nullopt;
   return perception::CoarseBlock{index, block->second.known, block->second.occupied};
 }
 
 std::optional<std::size_t> CarriedBlocks::number_of(Robot& robot, const perception::SubmapKey& key) const {
-  const auto found = std::find(robot.submaps.begin(), robot.submaps.end(), key);
-  if (found != robot.submaps.end()) return static_cast<std::size_t>(found - robot.submaps.begin());
+  if (const auto found = robot.numbers.find(key); found != robot.numbers.end()) return found->second;
   if (robot.submaps.size() >= bounds_.max_submaps) return std::nullopt;
   robot.submaps.push_back(key);
-  return robot.submaps.size() - 1;
+  return robot.numbers[key] = robot.submaps.size() - 1;
 }
 
 bool CarriedBlocks::take(const perception::MapPiece& piece) {

@@ -87,6 +87,7 @@ class CarriedBlocks final : public transfer::Source {
   };
   struct Robot {
     std::vector<perception::SubmapKey> submaps{};
+    std::map<perception::SubmapKey, std::size_t> numbers{};  ///< The place of each in `submaps`.
     std::array<Part, perception::MapDigest::kPoses> parts{};
     std::size_t size() const;
   };

@@ -42,7 +42,7 @@ Result<void> Carrier::store(const PieceToCarry& piece) {
 Result<void> Carrier::take(const PieceToCarry& piece, Time now) {
   const Result<void> stored = store(piece);
   if (!stored) ++refused_;
-  if (stored || (stored.reason() != Reason::malformed && stored.reason() != Reason::out_of_range))
+  if (stored || transfer::is_acknowledged(stored.reason()))
     (void)receiver_.take(piece.robot, piece.session, piece.id, now);
   return stored;
 }

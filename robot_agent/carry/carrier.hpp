@@ -36,8 +36,7 @@ class Carrier {
 
   /// Takes a piece. Errors: malformed (also: of another robot's map), wrong_protocol (of another release),
   /// not_supported (no part of a map), out_of_range (changes of blocks that are not here in that state),
-  /// queue_full (no room). All but malformed and out_of_range are acknowledged: the piece would come again
-  /// without end.
+  /// queue_full (no room). What transfer::is_acknowledged says is acknowledged.
   Result<void> take(const PieceToCarry& piece, Time now);
   /// The receipts to send now, by robot, see transfer::Receiver::due. `bandwidth`: of the own link, bit/s.
   std::optional<std::vector<std::pair<std::string, transfer::Receipt>>> due(Time now, double bandwidth) {

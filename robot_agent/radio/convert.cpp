@@ -280,15 +280,6 @@ radio::Capabilities to_radio(const Platform& platform, const std::string& robot,
   return out;
 }
 
-radio::BulkReceipt to_radio(const std::string& robot, const transfer::Receipt& receipt) {
-  radio::BulkReceipt out;
-  out.robot(robot);
-  out.session(receipt.session);
-  out.newest(receipt.newest);
-  out.received(receipt.received);
-  return out;
-}
-
 transfer::Ack from_radio(const radio::BulkAck& in, const std::string& robot) {
   transfer::Ack out{in.station_id(), in.start(), {}, {}};
   if (in.look().size() == 3) {

@@ -38,7 +38,6 @@ Peer from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender
 std::optional<TeamBeacon> from_radio(const radio::TeamBeacon& in);
 /// What the station has of `robot`: without a receipt for it, nothing.
 transfer::Ack from_radio(const radio::BulkAck& in, const std::string& robot);
-radio::BulkReceipt to_radio(const std::string& robot, const transfer::Receipt& receipt);
 radio::TeamBeacon to_radio(const TeamBeacon& beacon);
 
 radio::PlannedRoute to_radio(const PlannedRoute& route);

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "core/transfer/receipt_message.hpp"
 #include "core/wire/component_io.hpp"
 #include "core/wire/link/peer_meter.hpp"
 #include "core/wire/topics.hpp"
@@ -282,7 +283,8 @@ void RadioEdge::send(const transfer::PeerId& carrier,
   out.station_id(carrier);
   out.start(1);
   out.carrier(true);
-  for (const auto& [robot, receipt] : receipts) out.receipts().push_back(to_radio(robot, receipt));
+  for (const auto& [robot, receipt] : receipts)
+    out.receipts().push_back(transfer::to_message<radio::BulkReceipt>(robot, receipt));
   (void)endpoints_->carrier_ack.write(out);  // Best effort: a receipt has what those before it had.
 }
 

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "adit/bulk.h"
-#include "basestation/content/convert.hpp"
 #include "core/findings/finding_piece.hpp"
 #include "core/store/memory_disk.hpp"
+#include "core/transfer/receipt_message.hpp"
 #include "core/transfer/receiver.hpp"
 #include "tests/agent/agent_bench.hpp"
 
@@ -63,7 +63,8 @@ class Found : public testing::Test {
     ack.station(desk.op->name);
     ack.station_id(desk.op->id);
     ack.start(7);
-    for (const auto& [robot, receipt] : *due) ack.receipts().push_back(station::to_radio(robot, receipt));
+    for (const auto& [robot, receipt] : *due)
+      ack.receipts().push_back(transfer::to_message<radio::BulkReceipt>(robot, receipt));
     (void)desk.acks.write(ack);
   }
   void report(std::uint64_t id) {

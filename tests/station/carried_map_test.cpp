@@ -145,26 +145,29 @@ TEST_F(CarriedMapTest, StaysBoundedAndTakesNoRoomFromRobotsThatAreHeard) {
     for (int i = 0; i < count; ++i) out.blocks.push_back({{{x + i, 0, 0}, kFull, 0}, revision});
     return out;
   };
+  const auto carry = [&store](const std::string& carrier, perception::MapPiece content) {
+    const bool complete = store.take_carried(carrier, content, 10, Time{60s});
+    return std::pair(complete, content.blocks.size());
+  };
   ASSERT_TRUE(store.count("r1", 10, 0, Time{1s}));
   ASSERT_TRUE(store.take("r1", piece("r1", 0, 50)));
-  EXPECT_EQ(store.take_carried("bad", piece("a", 0, 30), 10, Time{60s}).value(), 30U);
-  EXPECT_EQ(store.take_carried("bad", piece("b", 0, 30), 10, Time{60s}).reason(), Reason::queue_full);
-  EXPECT_EQ(store.take_carried("bad", piece("c", 0, 1), 10, Time{60s}).reason(), Reason::queue_full);
+  EXPECT_EQ(carry("bad", piece("a", 0, 30)), std::pair(true, std::size_t{30}));
+  EXPECT_EQ(carry("bad", piece("b", 0, 30)), std::pair(false, std::size_t{10}));
+  EXPECT_EQ(carry("bad", piece("c", 0, 1)), std::pair(false, std::size_t{0}));
   EXPECT_FALSE(store.robots().contains("c"));
-  EXPECT_EQ(store.take_carried("bad", piece("r1", 0, 50, 9), 10, Time{60s}).reason(), Reason::queue_full);
+  EXPECT_EQ(carry("bad", piece("r1", 0, 50, 9)), std::pair(false, std::size_t{0}));
   EXPECT_EQ(store.robots().at("r1").carried_blocks, 0U);
   EXPECT_EQ(store.robots().at("a").blocks + store.robots().at("b").blocks, 40U);
   EXPECT_EQ(store.refused_carried(), 71U);
   EXPECT_EQ(store.refused(), 0U);
-  for (const char* carrier : {"c1", "c2", "c3"})
-    (void)store.take_carried(carrier, piece("a", 0, 1), 1, Time{2s});
+  for (const char* carrier : {"c1", "c2", "c3"}) (void)carry(carrier, piece("a", 0, 1));
   EXPECT_EQ(store.robots().at("a").carriers.size(), 2U);
   // Robots that are heard get the room of those that were only carried here.
   ASSERT_TRUE(store.take("r1", piece("r1", 100, 50)));
   EXPECT_EQ(store.robots().at("r1").blocks, 100U);
   EXPECT_FALSE(store.robots().contains("a"));
   EXPECT_EQ(store.evicted(), 0U) << "no robot counts on that";
-  EXPECT_EQ(store.take_carried("bad", piece("d", 0, 1), 10, Time{60s}).reason(), Reason::queue_full);
+  EXPECT_EQ(carry("bad", piece("d", 0, 1)), std::pair(false, std::size_t{0}));
   EXPECT_EQ(store.robots().at("r1").blocks, 100U);
 }
 
@@ -177,12 +180,11 @@ TEST_F(CarriedMapTest, IsThereAfterARestartAlsoOfAFileThatWasWrittenAgain) {
   for (const JournalPiece& piece : pieces_of(replica->chunks())) {
     const bool poses = piece.kind == static_cast<std::uint8_t>(transfer::Kind::carried_poses);
     if (poses) {
-      EXPECT_TRUE(
-          again.take_carried(piece.robot, perception::decode_poses(piece.data).value(), 1, std::nullopt)
-              .ok());
+      perception::SubmapPoses content = perception::decode_poses(piece.data).value();
+      EXPECT_TRUE(again.take_carried(piece.robot, content, 1, std::nullopt));
     } else if (transfer::is_carried(piece.kind)) {
-      EXPECT_TRUE(
-          again.take_carried(piece.robot, perception::decode(piece.data).value(), 1, std::nullopt).ok());
+      perception::MapPiece content = perception::decode(piece.data).value();
+      EXPECT_TRUE(again.take_carried(piece.robot, content, 1, std::nullopt));
     } else {
       EXPECT_TRUE(again.count(piece.robot, 1, 0, std::nullopt));
       EXPECT_TRUE(again.take(piece.robot, perception::decode(piece.data).value()));
