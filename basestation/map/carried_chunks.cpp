@@ -10,6 +10,8 @@ namespace {
 constexpr Duration kTick = 100ms;
 constexpr Duration kHeardNow = 10s;  // A carrier sends nothing of a robot that was heard more recently.
 
+constexpr std::uint32_t kCoarse = perception::BlockUpdate::kCoarseRevision;
+
 bool is_heard(const ChunkStore::Robot& robot, std::optional<Time> now) {
   return robot.heard && now && *now - *robot.heard < kHeardNow;
 }
@@ -43,10 +45,14 @@ void ChunkStore::put(Robot& robot, Submap& submap, const perception::SubmapKey& 
     robot.carried_blocks -= block.carried;
     carried_blocks_ -= block.carried;
   }
-  block = {update.block.known, update.block.occupied, update.revision, now_, carried ? 1U : 0U};
+  const std::uint32_t revision = update.stored_revision();
+  const bool adds = !added && block.revision == kCoarse && revision == kCoarse;
+  const perception::CoarseBlock now =
+      adds ? merged({update.block.index, block.known, block.occupied}, update.block) : update.block;
+  block = {now.known, now.occupied, revision, now_, carried ? 1U : 0U};
   robot.carried_blocks += block.carried;
   carried_blocks_ += block.carried;
-  robot.digest.add(key, update.block);
+  robot.digest.add(key, now);
   ++revision_;
 }
 
@@ -103,15 +109,14 @@ bool ChunkStore::take_carried(const std::string& carrier, perception::MapPiece& 
     const auto known = into->blocks.find(update.block.index);
     const bool is_new = known == into->blocks.end();
     const bool replaces_carried = !is_new && known->second.carried != 0;
-    const std::uint32_t revision = piece.revision_of(update);
-    if (!is_new && revision <= known->second.revision) return true;
+    if (!is_new && !perception::is_newer(known->second.known, known->second.revision, update)) return true;
     if (!is_new && !replaces_carried && is_heard(*robot, now)) return true;
     if ((is_new && blocks_ >= params_.max_blocks) ||
         (!replaces_carried && carried_blocks_ >= params_.max_carried_blocks)) {
       ++refused;
       return true;
     }
-    put(*robot, *into, piece.key, {update.block, revision}, true);
+    put(*robot, *into, piece.key, update, true);
     return false;
   });
   return note_carried(robot, carrier, piece.blocks.size(), refused);

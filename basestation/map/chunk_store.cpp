@@ -89,11 +89,11 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
         complete = false;
         continue;
       }
-    } else if (piece.level < perception::MapPiece::kFinest ||
-               (update.revision <= known->second.revision && known->second.carried == 0)) {
+    } else if (update.coarse ? known->second.revision != perception::BlockUpdate::kCoarseRevision
+                             : update.revision <= known->second.revision && known->second.carried == 0) {
       continue;
     }
-    put(robots_.at(robot), *into, piece.key, {update.block, piece.revision_of(update)}, false);
+    put(robots_.at(robot), *into, piece.key, update, false);
   }
   return complete;
 }

@@ -69,8 +69,8 @@ class ChunkStore {
 
   explicit ChunkStore(ChunkStoreParams params = {}) : params_(params) {}
 
-  /// Takes a piece's blocks, those in voxels of 0.4 m where nothing is. `robot`: the sender, which must be
-  /// the one that the piece names. Returns whether all of it was taken.
+  /// Takes a piece's blocks, those in voxels of 0.4 m where nothing smaller is. `robot`: the sender, which
+  /// must be the one that the piece names. Returns whether all of it was taken.
   bool take(const std::string& robot, const perception::MapPiece& piece);
   bool take(const std::string& robot, const perception::SubmapPoses& poses);
   /// Counts a piece of that robot, heard at `now`; nothing: from the disk. Returns false if there is no room
@@ -120,7 +120,7 @@ class ChunkStore {
   /// Forgets a robot that was not heard since the start, other than this one. False: there is none.
   bool make_room(const std::string& robot);
   Submap* submap(const std::string& robot, const perception::SubmapKey& key);
-  /// Stores a block that is newer.
+  /// Stores a block that is newer, or adds one in voxels of 0.4 m to what is known in such.
   void put(Robot& robot, Submap& submap, const perception::SubmapKey& key,
            const perception::BlockUpdate& update, bool carried);
   void put(Robot& robot, Submap& submap, const perception::SubmapPose& pose, bool carried);

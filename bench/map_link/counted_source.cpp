@@ -15,12 +15,12 @@ std::optional<transfer::Source::Content> CountedSource::next(std::span<const tra
   account_.content += content->data.size();
   ++account_.sent;
   const double part = static_cast<double>(content->data.size()) / static_cast<double>(piece->blocks.size());
-  if (piece->level < 2) {
-    account_.coarse += static_cast<double>(content->data.size());
-    return content;
-  }
   std::vector<Name>& names = flights_[content->token];
   for (const perception::BlockUpdate& update : piece->blocks) {
+    if (update.coarse) {
+      account_.coarse += part;
+      continue;
+    }
     const Name& name = names.emplace_back(piece->key.index, update.block.index);
     const bool repeated = lost_.erase(name) != 0;
     const bool first = ever_.insert(name).second;

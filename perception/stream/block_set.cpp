@@ -6,7 +6,7 @@
 namespace adit::perception {
 
 BlockSet block_set(std::span<const CoarseBlock> blocks) {
-  BlockSet out{2, {}, {}};
+  BlockSet out{.level = 2};
   out.voxels.reserve(64 * blocks.size());
   for (const CoarseBlock& block : blocks) {
     out.indices.push_back(block.index);
@@ -19,7 +19,7 @@ BlockSet block_set(std::span<const CoarseBlock> blocks) {
 }
 
 BlockSet block_set(std::span<const FineBlock> blocks) {
-  BlockSet out{3, {}, {}};
+  BlockSet out{.level = 3};
   out.voxels.reserve(512 * blocks.size());
   for (const FineBlock& block : blocks) {
     out.indices.push_back(block.index);
@@ -31,7 +31,7 @@ BlockSet block_set(std::span<const FineBlock> blocks) {
 }
 
 BlockSet coarser(const BlockSet& set) {
-  BlockSet out{set.level - 1, set.indices, {}};
+  BlockSet out{.level = set.level - 1, .indices = set.indices};
   const auto edge = static_cast<std::size_t>(set.edge()), half = edge / 2;
   out.voxels.assign(set.indices.size() * out.voxels_in_block(), Voxel::unknown);
   for (std::size_t b = 0; b < set.indices.size(); ++b) {
@@ -45,6 +45,19 @@ BlockSet coarser(const BlockSet& set) {
         }
   }
   return out;
+}
+
+CoarseBlock in_large_voxels(const CoarseBlock& block) {
+  const auto enlarged = [](std::uint64_t voxels) {
+    voxels |= voxels >> 1;
+    voxels |= voxels >> 4;
+    voxels |= voxels >> 16;
+    voxels &= 0x0000'0505'0000'0505ULL;  // The first voxel of each eight, if any of them is.
+    voxels |= voxels << 1;
+    voxels |= voxels << 4;
+    return voxels | voxels << 16;
+  };
+  return {block.index, enlarged(block.known), enlarged(block.occupied)};
 }
 
 std::vector<CoarseBlock> coarse_blocks(const BlockSet& set) {

@@ -19,6 +19,9 @@ struct BlockSet {
   int level{2};
   std::vector<BlockIndex> indices{};
   std::vector<Voxel> voxels{};  ///< 8^level of each block, x + edge y + edge^2 z.
+  /// Whether of a block only voxels of 0.4 m are known: all parts of one are as it is. At level 2 only;
+  /// empty: of none.
+  std::vector<bool> coarse{};
 
   int edge() const { return 1 << level; }
   std::size_t voxels_in_block() const { return std::size_t{1} << (3 * level); }
@@ -32,6 +35,8 @@ BlockSet block_set(std::span<const CoarseBlock> blocks);
 BlockSet block_set(std::span<const FineBlock> blocks);
 /// The same blocks one level higher; `set` must not be of level 0.
 BlockSet coarser(const BlockSet& set);
+/// A block whose voxels of 0.2 m all are as their voxel of 0.4 m.
+CoarseBlock in_large_voxels(const CoarseBlock& block);
 /// Blocks of a set of at most level 2 as masks: all parts of a larger voxel are as it is.
 std::vector<CoarseBlock> coarse_blocks(const BlockSet& set);
 

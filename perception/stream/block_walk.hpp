@@ -38,6 +38,7 @@ class BlockWalk {
   void write(const BlockSet& set) {
     level_ = set.level;
     indices_ = set.indices;
+    coarse_blocks_ = set.coarse;
     truth_[level_].resize(set.voxels.size());
     std::transform(set.voxels.begin(), set.voxels.end(), truth_[level_].begin(), BlockStates::state_of);
     truth_.fill_above(level_);
@@ -51,6 +52,8 @@ class BlockWalk {
     if (const Read result = walk(); result != Read::good) return result;
     set.level = level_;
     set.indices = indices_;
+    const bool any = std::find(coarse_blocks_.begin(), coarse_blocks_.end(), true) != coarse_blocks_.end();
+    set.coarse = any ? coarse_blocks_ : std::vector<bool>();
     const States& states = coded_[level_];
     set.voxels.resize(states.size());
     std::transform(states.begin(), states.end(), set.voxels.begin(), [](std::uint8_t s) {
@@ -94,6 +97,7 @@ class BlockWalk {
     if (level_ > max_level_) return Read::malformed;
     none_.fill(kNotCoded);
     if (!walk_indices(coder_, level_, indices_)) return Read::malformed;
+    if (!walk_coarse()) return Read::malformed;
     if (const Read result = walk_bases(); result != Read::good) return result;
     find_neighbours();
     for (int level = 0; level <= level_; ++level)
@@ -107,24 +111,42 @@ class BlockWalk {
     return Read::good;
   }
 
+  /// Of which blocks only voxels of 0.4 m are known.
+  bool walk_coarse() {
+    coarse_blocks_.resize(indices_.size());
+    if (level_ != kBaseLevel || indices_.empty()) return true;
+    const auto count = std::count(coarse_blocks_.begin(), coarse_blocks_.end(), true);
+    const std::uint32_t which = choice(static_cast<std::size_t>(count), indices_.size());
+    for (std::size_t block = 0; block < indices_.size(); ++block)
+      coarse_blocks_[block] = which == 1 || (which == 2 && coder_.raw(coarse_blocks_[block] ? 1 : 0, 1) != 0);
+    return which <= 2;
+  }
+  /// None, all, or a bit for each block: 0, 1, 2.
+  std::uint32_t choice(std::size_t count, std::size_t all) {
+    return coder_.raw(count == 0 ? 0 : count == all ? 1 : 2, 2);
+  }
+
   /// Which blocks have a base, and a checksum of all of these. Bases are of voxels of 0.2 m.
   Read walk_bases() {
     has_base_.assign(indices_.size(), false);
     if (level_ != kBaseLevel || indices_.empty()) return Read::good;
     const bool writes = !truth_[level_].empty();
     std::vector<std::optional<CoarseBlock>> bases(indices_.size());
-    std::size_t count = 0;
-    for (std::size_t block = 0; block < indices_.size() && writes && find_base_; ++block) {
+    std::size_t count = 0, fine = 0;
+    for (std::size_t block = 0; block < indices_.size(); ++block) {
+      if (coarse_blocks_[block]) continue;
+      ++fine;
+      if (!writes || !find_base_) continue;
       bases[block] = find_base_(indices_[block]);
       has_base_[block] = bases[block] && is_known_of(block, bases[block]->known);
       if (!has_base_[block]) bases[block].reset();
       count += has_base_[block] ? 1 : 0;
     }
-    // None, all, or a bit for each block.
-    const std::uint32_t which = coder_.raw(count == 0 ? 0 : count == indices_.size() ? 1 : 2, 2);
+    const std::uint32_t which = choice(count, fine);
     if (which > 2) return Read::malformed;
     if (which == 0) return Read::good;
     for (std::size_t block = 0; block < indices_.size(); ++block) {
+      if (coarse_blocks_[block]) continue;
       has_base_[block] = which == 1 || coder_.raw(has_base_[block] ? 1 : 0, 1) != 0;
       if (!has_base_[block] || writes) continue;
       if (find_base_) bases[block] = find_base_(indices_[block]);
@@ -246,12 +268,20 @@ class BlockWalk {
     }
   }
 
+  /// Whether the level above says what is at this one.
+  bool is_given(std::size_t block, int level) const { return level == kBaseLevel && coarse_blocks_[block]; }
   /// Whether all voxels of a block are known to both sides.
   bool is_done(std::size_t block) const { return coded_[level_][block * size_at(level_)] != kNotCoded; }
 
   /// For each free voxel of the level above: are all its parts known?
   void walk_full(std::size_t block, int level) {
     if (coded_[0][block] == kUnknown || is_done(block)) return;
+    if (is_given(block, level)) {
+      for (std::size_t voxel = 0; voxel < size_at(level - 1); ++voxel)
+        if (std::uint8_t& state = coded_[level - 1][block * size_at(level - 1) + voxel]; state == kKnown)
+          state |= kFull;
+      return;
+    }
     coder_.begin(block);
     const int above = level - 1;
     pad(coded_, above, block, fine_);
@@ -303,6 +333,8 @@ class BlockWalk {
         std::uint8_t state = kUnknown;
         if ((whole & kFull) != 0) {
           state = kKnown;
+        } else if (is_given(block, level)) {
+          state = whole & (kKnown | kOccupied);
         } else if ((whole & kKnown) != 0) {
           const VoxelContext context = context_at(level, at, child, above, has_base);
           const bool last = child == 7, had = is_known_in_base(block, level, voxel);
@@ -337,7 +369,7 @@ class BlockWalk {
   std::vector<BlockIndex> indices_{};
   std::vector<std::array<std::int32_t, 27>> neighbours_{};
   FindBase find_base_;
-  std::vector<bool> has_base_{};
+  std::vector<bool> has_base_{}, coarse_blocks_{};
   BlockStates truth_{}, base_{}, coded_{};
   Padded fine_{}, coarse_{}, base_fine_{}, base_coarse_{};
   std::array<std::uint8_t, 27> none_{};

@@ -19,13 +19,13 @@
 namespace adit::perception {
 namespace {
 
-constexpr std::uint8_t kVersion = 4;
+constexpr std::uint8_t kVersion = 5;
 constexpr std::uint8_t kBlocks = 1, kPoses = 2;
 constexpr std::size_t kHeader = 2;  ///< Version, and kind with the version of the coder's tables above it.
 constexpr std::size_t kBlocksHeader = 6;  ///< The same, and the checksum.
 constexpr std::uint8_t kBlocksKind = kBlocks | ContextTrees::kVersion << 4;
-constexpr int kLevel = 3;  ///< Higher levels of Zstandard gain less than 1 % on a piece.
-constexpr int kFinestLevel = MapPiece::kFinest, kCoarsestLevel = 1;
+constexpr int kLevel = 3;       ///< Higher levels of Zstandard gain less than 1 % on a piece.
+constexpr int kVoxelLevel = 2;  // Of the voxels of 0.2 m.
 constexpr double kPositionUnit = 1e-3, kQuaternionUnit = 1e-5;
 constexpr double kMaxPosition = 1e5;  ///< m
 
@@ -86,7 +86,7 @@ std::uint32_t read_wide(RangeDecoder& from) {
 }
 
 /// `bits`: if given, gets what each block took.
-std::vector<std::uint8_t> encode_blocks(const SubmapKey& key, std::span<const BlockUpdate> blocks, int level,
+std::vector<std::uint8_t> encode_blocks(const SubmapKey& key, std::span<const BlockUpdate> blocks,
                                         const FindBase& find_base, std::vector<std::uint32_t>* bits) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < blocks.size(); ++i)
@@ -103,9 +103,11 @@ std::vector<std::uint8_t> encode_blocks(const SubmapKey& key, std::span<const Bl
                           }),
               order.end());
   std::vector<CoarseBlock> sorted;
+  std::vector<bool> coarse;
   std::uint32_t newest = 0, oldest = 0xffffffffu;
   for (const std::size_t i : order) {
-    sorted.push_back(blocks[i].block);
+    sorted.push_back(blocks[i].coarse ? in_large_voxels(blocks[i].block) : blocks[i].block);
+    coarse.push_back(blocks[i].coarse);
     newest = std::max(newest, blocks[i].revision);
     oldest = std::min(oldest, blocks[i].revision);
   }
@@ -116,7 +118,7 @@ std::vector<std::uint8_t> encode_blocks(const SubmapKey& key, std::span<const Bl
   encoder.bits(static_cast<std::uint32_t>(width), 6);
   std::vector<std::uint32_t> taken;
   BlockSet set = block_set(std::span<const CoarseBlock>(sorted));
-  while (set.level > std::clamp(level, kCoarsestLevel, kFinestLevel)) set = coarser(set);
+  set.coarse = std::move(coarse);
   write_blocks(encoder, set, find_base, bits != nullptr ? &taken : nullptr);
   for (const std::size_t i : order) encoder.bits(newest - blocks[i].revision, width);
   if (bits != nullptr) {
@@ -144,8 +146,7 @@ constexpr int kPackAttempts = 4;
 
 std::vector<std::uint8_t> encode(const MapPiece& piece, const FindBase& find_base) {
   const std::span<const BlockUpdate> blocks(piece.blocks);
-  return encode_blocks(piece.key, blocks.first(std::min(blocks.size(), kMaxPieceBlocks)), piece.level,
-                       find_base, nullptr);
+  return encode_blocks(piece.key, blocks.first(std::min(blocks.size(), kMaxPieceBlocks)), find_base, nullptr);
 }
 
 Result<MapPiece> decode(std::span<const std::uint8_t> bytes, const FindStored& find_stored) {
@@ -166,19 +167,19 @@ Result<MapPiece> decode(std::span<const std::uint8_t> bytes, const FindStored& f
   const int width = static_cast<int>(decoder.bits(6));
   if (width > 32) return malformed("its revisions");
   const auto find_base = [&](const BlockIndex& index) { return find_stored(piece.key, index); };
-  const auto set = read_blocks(decoder, kFinestLevel, find_stored ? FindBase(find_base) : FindBase());
+  const auto set = read_blocks(decoder, kVoxelLevel, find_stored ? FindBase(find_base) : FindBase());
   if (!set && set.reason() == Reason::out_of_range) return set.error();
-  if (!set || set->level < kCoarsestLevel) return malformed("its blocks");
-  piece.level = set->level;
+  if (!set || set->level != kVoxelLevel) return malformed("its blocks");
   for (const CoarseBlock& block : coarse_blocks(*set)) {
     const std::uint32_t older = decoder.bits(width);
     if (older > newest) return malformed("a block's revision");
-    piece.blocks.push_back({block, newest - older});
+    const bool coarse = !set->coarse.empty() && set->coarse[piece.blocks.size()];
+    piece.blocks.push_back({block, newest - older, coarse});
   }
   return piece;
 }
 
-PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes, int level,
+PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes,
                  const FindBase& find_base) {
   blocks = blocks.first(std::min(blocks.size(), kMaxPieceBlocks));
   PackedPiece best{};
@@ -187,7 +188,7 @@ PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std:
   std::size_t count = std::min(blocks.size(), std::max<std::size_t>(1, max_bytes / 4));
   for (int attempt = 0; count > best.count && count < too_many; ++attempt) {
     std::vector<std::uint32_t> bits;
-    std::vector<std::uint8_t> bytes = encode_blocks(key, blocks.first(count), level, find_base, &bits);
+    std::vector<std::uint8_t> bytes = encode_blocks(key, blocks.first(count), find_base, &bits);
     const std::size_t size = bytes.size();
     if (size <= max_bytes) {
       best = {std::move(bytes), count};

@@ -25,27 +25,38 @@ constexpr std::size_t kMaxRobotName = 32;
 constexpr std::size_t kMaxPieceContent = 8192;  ///< Bytes of a piece, and of poses before compression.
 
 /// A block, with the sender's revision of it.
+///
+/// Of a block that still changes, a sender gives voxels of 0.4 m only. They are for who has nothing finer of
+/// it, as a piece goes to all stations, of which others may know more: they are stored under kCoarseRevision
+/// and added to each other, so that any state in voxels of 0.2 m replaces them, in any order.
 struct BlockUpdate {
+  static constexpr std::uint32_t kCoarseRevision = 0;
   CoarseBlock block{};
   std::uint32_t revision{};
+  bool coarse{};  ///< In voxels of 0.4 m, all eight parts of one the same.
+
+  /// The revision under which it is stored.
+  std::uint32_t stored_revision() const { return coarse ? kCoarseRevision : revision; }
   bool operator==(const BlockUpdate&) const = default;
 };
 
-/// Blocks of one submap, at most kMaxPieceBlocks. Those of a lower level than kFinest are for who has nothing
-/// of them, as a piece goes to all stations, of which others may know more: they are stored under
-/// kCoarseRevision, so that any state at the finest level replaces them, in any order.
+/// Blocks of one submap, at most kMaxPieceBlocks.
 struct MapPiece {
-  static constexpr int kFinest = 2;
-  static constexpr std::uint32_t kCoarseRevision = 0;
   SubmapKey key{};
   std::vector<BlockUpdate> blocks{};
-  int level{kFinest};  ///< 2: voxels of 0.2 m; 1: of 0.4 m, all eight parts of one the same.
-
-  /// The revision under which a block is stored.
-  std::uint32_t revision_of(const BlockUpdate& update) const {
-    return level < kFinest ? kCoarseRevision : update.revision;
-  }
 };
+
+/// What two states of a block in voxels of 0.4 m show together; the later one wins where both know.
+inline CoarseBlock merged(const CoarseBlock& earlier, const CoarseBlock& later) {
+  return {later.index, earlier.known | later.known, (earlier.occupied & ~later.known) | later.occupied};
+}
+
+/// Whether a state of a block is to be stored where one with these known voxels and this revision is.
+inline bool is_newer(std::uint64_t known, std::uint32_t revision, const BlockUpdate& update) {
+  if (revision != BlockUpdate::kCoarseRevision || update.stored_revision() != revision)
+    return update.stored_revision() > revision;
+  return (update.block.known & ~known) != 0;
+}
 
 /// Place of a submap.
 struct SubmapPose {
@@ -61,7 +72,7 @@ struct SubmapPoses {
 
 /// Encodes a piece; blocks beyond kMaxPieceBlocks or BlockIndex::kLimit are left out, and older states of a
 /// block that is there twice. May be longer than kMaxPieceBytes: see pack(). Equal revisions take no space.
-/// `find_base`: an older state of a block of level 2 that all receivers have, see write_blocks().
+/// `find_base`: an older state of a block in voxels of 0.2 m that all receivers have, see write_blocks().
 std::vector<std::uint8_t> encode(const MapPiece& piece, const FindBase& find_base = {});
 std::vector<std::uint8_t> encode(const SubmapPoses& poses);
 
@@ -80,9 +91,8 @@ struct PackedPiece {
 };
 
 /// Packs as many of the first blocks as fit into `max_bytes` (at least 100), within 5 % or so; they are
-/// encoded two or three times for it. Blocks that are neighbours take least. `level`, `find_base`: see
-/// MapPiece and encode().
+/// encoded two or three times for it. Blocks that are neighbours take least. `find_base`: see encode().
 PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes,
-                 int level = 2, const FindBase& find_base = {});
+                 const FindBase& find_base = {});
 
 }  // namespace adit::perception

@@ -11,6 +11,7 @@ using transfer::PeerId;
 
 static_assert(transfer::ContentDigest::kParts == MapDigest::kParts);
 
+constexpr std::uint32_t kCoarse = perception::BlockUpdate::kCoarseRevision;
 constexpr std::size_t kLookedAt = 2048;  // Blocks from which one piece is chosen.
 
 }  // namespace
@@ -67,8 +68,8 @@ bool CarriedBlocks::take(const perception::MapPiece& piece) {
   if (!submap) return false;
   bool complete = true;
   for (const perception::BlockUpdate& update : piece.blocks) {
-    const perception::CoarseBlock& block = update.block;
-    const std::uint32_t revision = piece.revision_of(update);
+    perception::CoarseBlock block = update.block;
+    const std::uint32_t revision = update.stored_revision();
     Part& part = robot.parts[MapDigest::part_of(block.index)];
     const Ref ref{*submap, block.index};
     auto known = part.blocks.find(ref);
@@ -80,11 +81,12 @@ bool CarriedBlocks::take(const perception::MapPiece& piece) {
       ++blocks_;
       known = part.blocks.try_emplace(ref).first;
       for (const auto& [peer, slot] : slots_.all()) ++part.missing[slot];
-    } else if (revision <= known->second.revision) {
+    } else if (!perception::is_newer(known->second.known, known->second.revision, update)) {
       continue;
     } else {
       // Also of an equal state: a station may have got another one between the two.
       const Block& old = known->second;
+      if (revision == kCoarse) block = merged({block.index, old.known, old.occupied}, block);
       part.sum -= MapDigest::hash(piece.key, {block.index, old.known, old.occupied});
       for (const auto& [peer, slot] : slots_.all()) part.missing[slot] += old.had_by >> slot & 1U;
     }

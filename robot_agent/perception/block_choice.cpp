@@ -39,22 +39,31 @@ std::uint64_t z_order(const perception::BlockIndex& index) {
 struct BlockSource::Choice {
   struct Candidate {
     Cell cell{};
-    bool late{};  ///< It cannot wait for a full piece.
+    bool late{};    ///< It cannot wait for a full piece.
+    bool coarse{};  ///< In voxels of 0.4 m.
   };
   std::vector<Candidate> all{};
   std::set<Cell> focused{};
 
-  void add(const Cell& cell, bool late) { all.push_back({cell, late}); }
+  void add(const Cell& cell, bool late, bool coarse = false) { all.push_back({cell, late, coarse}); }
   /// Puts those from `first` to `last` into an order in which neighbours follow each other, from the one that
   /// is first now on: in a piece, neighbours take least.
-  void gather(std::size_t first, std::size_t last) {
+  void gather(std::ptrdiff_t first, std::ptrdiff_t last) {
     if (first == last) return;
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
-    const auto end = all.begin() + static_cast<std::ptrdiff_t>(last);
+    const auto begin = all.begin() + first, end = all.begin() + last;
     const auto key = [](const Candidate& c) { return std::pair(c.cell.group, z_order(c.cell.index)); };
     const auto from = key(*begin);
     std::sort(begin, end, [&](const auto& a, const auto& b) { return key(a) < key(b); });
     std::rotate(begin, std::find_if(begin, end, [&](const auto& c) { return key(c) == from; }), end);
+  }
+  /// Puts those that are late first, from `first` on, and then their neighbours.
+  void late_first(std::ptrdiff_t first) {
+    const auto begin = all.begin() + first;
+    const auto rest = std::stable_partition(begin, all.end(), [](const Candidate& c) { return c.late; });
+    // The first that is late is put before the rest, as that whose neighbours are wanted.
+    if (rest == begin) return gather(first, std::ssize(all));
+    const auto at = std::rotate(begin, begin + 1, rest);
+    gather(at - all.begin(), std::ssize(all));
   }
   /// Those of one group: of the first one that is late, or else of which there are most.
   std::vector<Candidate> of_one_group() const {
@@ -67,19 +76,21 @@ struct BlockSource::Choice {
     if (late != all.end()) group = late->cell.group;
     std::vector<Candidate> out;
     for (const Candidate& candidate : all)
-      if (candidate.cell.group == group && out.size() < kBlocksInPiece) out.push_back(candidate);
+      if (candidate.cell.group == group) out.push_back(candidate);
+    return out;
+  }
+  static std::vector<Part> parts_of(const std::vector<Candidate>& candidates) {
+    std::vector<Part> out;
+    for (const Candidate& candidate : candidates) out.push_back({candidate.cell, candidate.coarse, 0});
     return out;
   }
 };
 
-BlockSource::Due BlockSource::due(const Peer& peer, const Cell& cell, Duration rest, Duration flush,
-                                  Duration latest, Time now) const {
-  const Place& place = cells_.at(cell);
-  // When it has arrived, what changed since is enough.
-  if (place.is_on_its_way(peer.bit)) return Due::no;
+BlockSource::Due BlockSource::due(const Place& place, std::optional<Time> since, const Waits& waits,
+                                  Time now) {
   const Duration quiet = now - place.changed;
-  if (!place.waits_since || now - *place.waits_since >= latest || quiet >= flush) return Due::late;
-  return quiet >= rest ? Due::yes : Due::no;
+  if (!since || now - *since >= waits.latest || quiet >= waits.flush) return Due::late;
+  return quiet >= waits.rest ? Due::yes : Due::no;
 }
 
 void BlockSource::focus(std::vector<BlockRegion> regions) {
@@ -100,11 +111,10 @@ void BlockSource::begin_focus(Peer& peer) {
 }
 
 bool BlockSource::is_behind() const {
-  return std::any_of(peers_.begin(), peers_.end(),
-                     [](const auto& peer) { return peer.second.unseen.size() > kBacklog; });
+  return std::any_of(peers_.begin(), peers_.end(), [](const auto& peer) { return peer.second.behind; });
 }
 
-std::size_t BlockSource::add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x,
+std::size_t BlockSource::add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Time now,
                                    Choice& out) const {
   std::size_t looked = 1;
   const Cell first{region.group, {x, region.low.y, INT32_MIN}};
@@ -113,15 +123,16 @@ std::size_t BlockSource::add_slice(const Peer& peer, const BlockRegion& region, 
     const auto& [cell, place] = *it;
     if (cell.index.x != x || cell.index.y > region.high.y) break;
     if (cell.index.z < region.low.z || cell.index.z > region.high.z) continue;
-    if (peer.unseen.contains(place.change) && !place.is_on_its_way(peer.bit) &&
-        out.focused.insert(cell).second)
-      out.add(cell, true);
+    if (!peer.unseen.contains(place.change)) continue;
+    const Stage stage = stage_of(place, peer.bit, now);
+    const bool may = stage == Stage::refine ? now - place.changed >= params_.hold : stage != Stage::none;
+    if (may && out.focused.insert(cell).second) out.add(cell, true, stage == Stage::coarse);
   }
   return looked;
 }
 
 void BlockSource::add_focused(Peer& peer, Time now, Choice& out) {
-  if (peer.unseen.size() <= kBacklog || (peer.focus_rests_until && now < *peer.focus_rests_until)) return;
+  if (!peer.behind || (peer.focus_rests_until && now < *peer.focus_rests_until)) return;
   std::vector<std::pair<const BlockRegion*, std::int32_t>> slices;
   for (const auto* regions : {&focus_, &peer.focus})
     for (const BlockRegion& region : *regions)
@@ -132,19 +143,45 @@ void BlockSource::add_focused(Peer& peer, Time now, Choice& out) {
   for (; slice < slices.size() && looked < kLookedAt && out.all.size() < kBlocksInPiece; ++slice) {
     peer.focus_next = (peer.focus_next + 1) % slices.size();
     const auto& [region, x] = slices[peer.focus_next];
-    looked += add_slice(peer, *region, x, out);
+    looked += add_slice(peer, *region, x, now, out);
   }
   if (slice == slices.size() && out.all.size() == before) peer.focus_rests_until = now + kFocusRest;
 }
 
-void BlockSource::add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const {
-  const bool behind = peer.unseen.size() > kBacklog;
-  std::size_t looked = 0;
+BlockSource::Stage BlockSource::stage_of(const Place& place, std::uint16_t peer, Time now) const {
+  // When it has arrived, what changed since is enough.
+  if (place.is_on_its_way(peer)) return Stage::none;
+  if (place.is_fine(peer)) return Stage::fine;
+  if (!place.lacks_coarse(peer)) return Stage::refine;
+  return now - place.changed >= params_.hold ? Stage::fine : Stage::coarse;
+}
+
+void BlockSource::add_unseen(Peer& peer, Duration wait, Time now, Choice& out) const {
+  struct Seen {
+    const Cell* cell{};
+    const Place* place{};
+    Stage stage{};
+    Due due{};
+  };
+  std::vector<Seen> seen;
+  std::size_t looked = 0, news = 0, all = 0;
   for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < kLookedAt; ++it, ++looked) {
-    const Due is_due = due(peer, it->second, params_.settle, wait, wait, now);
-    if (is_due != Due::no && !out.focused.contains(it->second))
-      out.add(it->second, behind || is_due == Due::late);
+    const Place& place = cells_.at(it->second);
+    const Stage stage = stage_of(place, peer.bit, now);
+    if (stage == Stage::none || out.focused.contains(it->second)) continue;
+    seen.push_back({&it->second, &place, stage, {}});
+    news += stage != Stage::refine ? 1 : 0;
   }
+  const Duration longest = (news < kFew ? 3 : 1) * wait;
+  for (Seen& s : seen) {
+    s.due = s.stage == Stage::refine
+                ? due(*s.place, s.place->waits_since, held(), now)
+                : due(*s.place, s.place->grew_since, {params_.settle, longest, longest}, now);
+    all += s.due != Due::no ? 1 : 0;
+  }
+  peer.behind = all > kBacklog;
+  for (const Seen& s : seen)
+    if (s.due != Due::no) out.add(*s.cell, peer.behind || s.due == Due::late, s.stage == Stage::coarse);
 }
 
 void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
@@ -152,7 +189,9 @@ void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
   std::size_t looked = 0, added = 0;
   for (const auto& [change, cell] : peer.changed) {
     if (looked++ >= kLookedAt || added >= kBlocksInPiece) break;
-    const Due is_due = due(peer, cell, params_.hold, 2 * params_.hold, params_.max_hold, now);
+    const Place& place = cells_.at(cell);
+    if (place.is_on_its_way(peer.bit)) continue;
+    const Due is_due = due(place, place.waits_since, held(), now);
     if (is_due != Due::no) out.add(cell, is_due == Due::late), ++added;
   }
   if (added == 0) peer.changed_rests_until = now + kRest;
@@ -163,53 +202,48 @@ bool BlockSource::is_coarse_first(const Peer& peer, std::size_t max_bytes) const
          static_cast<double>(params_.coarse_pieces * max_bytes);
 }
 
-std::vector<BlockSource::Cell> BlockSource::choose_coarse(Peer& peer) {
+std::vector<BlockSource::Part> BlockSource::choose_coarse(Peer& peer) {
   Choice choice;
   for (auto it = peer.unseen.lower_bound(peer.coarse_below);
        it != peer.unseen.begin() && choice.all.size() < kLookedAt;) {
     --it;
     const Place& place = cells_.at(it->second);
     const bool lacks = ((place.coarse_by | place.seen_by | place.up_to_date) & peer.bit) == 0;
-    if (lacks) choice.add(it->second, true);
+    if (lacks) choice.add(it->second, true, true);
     if (choice.all.empty()) peer.coarse_below = it->first;
   }
   if (choice.all.empty()) return {};
-  choice.gather(0, choice.all.size());
-  std::vector<Cell> out;
-  for (const Choice::Candidate& candidate : choice.of_one_group()) out.push_back(candidate.cell);
+  choice.gather(0, std::ssize(choice.all));
+  std::vector<Part> out = Choice::parts_of(choice.of_one_group());
+  out.resize(std::min(out.size(), kBlocksInPiece));
   return out;
 }
 
-std::vector<BlockSource::Cell> BlockSource::choose(Peer& peer, std::size_t max_bytes, Time now) {
+std::vector<BlockSource::Part> BlockSource::choose(Peer& peer, std::size_t max_bytes, Time now) {
   if (peer.rests_until && now < *peer.rests_until) return {};
   Choice choice;
   const int longer = max_bytes < kSmallPiece ? 4 : 1;
-  const bool behind = peer.unseen.size() > kBacklog;
   const bool changed_first = (tokens_ + 1) % kChangedEvery == 0;
   if (changed_first) add_changed(peer, now, choice);
-  const auto first = static_cast<std::ptrdiff_t>(choice.all.size());
+  const std::ptrdiff_t first = std::ssize(choice.all);
   add_focused(peer, now, choice);
-  const auto focused = static_cast<std::ptrdiff_t>(choice.all.size());
-  add_unseen(peer, (peer.unseen.size() < kFew ? 3 : 1) * longer * params_.wait, now, choice);
+  const std::ptrdiff_t focused = std::ssize(choice.all);
+  add_unseen(peer, longer * params_.wait, now, choice);
   // Free space shows an operator less than surfaces.
   const auto is_surface = [this](const auto& candidate) { return cells_.at(candidate.cell).occupied != 0; };
   std::stable_partition(choice.all.begin() + first, choice.all.begin() + focused, is_surface);
   const auto free = std::stable_partition(choice.all.begin() + focused, choice.all.end(), is_surface);
-  if (behind)
-    choice.gather(static_cast<std::size_t>(focused), static_cast<std::size_t>(free - choice.all.begin()));
+  if (peer.behind) choice.gather(focused, free - choice.all.begin());
   if (!changed_first) add_changed(peer, now, choice);
-  std::vector<Cell> out;
+  if (!peer.behind) choice.late_first(0);
   if (!choice.all.empty()) {
-    bool late = false;
-    double bytes = 0.0;
-    for (const Choice::Candidate& candidate : choice.of_one_group()) {
-      out.push_back(candidate.cell);
-      late = late || candidate.late;
-      bytes += cells_.at(candidate.cell).has_base(peer.bit) ? change_bytes_ : whole_bytes_;
-    }
-    const bool full = bytes >= params_.fill * static_cast<double>(max_bytes);
-    if (full || (late && (behind || !peer.round_ends || now >= *peer.round_ends))) {
+    const auto candidates = choice.of_one_group();
+    const bool late = std::any_of(candidates.begin(), candidates.end(), [](const auto& c) { return c.late; });
+    std::vector<Part> out = Choice::parts_of(candidates);
+    const bool full = bytes_of(out, peer.bit).sum() >= params_.fill * static_cast<double>(max_bytes);
+    if (full || (late && (peer.behind || !peer.round_ends || now >= *peer.round_ends))) {
       if (!full) peer.round_ends = now + longer * params_.round;
+      out.resize(std::min(out.size(), kBlocksInPiece));
       return out;
     }
   }

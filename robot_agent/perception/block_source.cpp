@@ -16,7 +16,8 @@ constexpr std::uint64_t kAlone = 1ULL << 63U;  // Groups of submaps without a la
 constexpr double kCovered = 0.9;
 constexpr std::size_t kVotes = 3;             // The newest ones decide, see BlockVotes.
 constexpr std::size_t kLookedForCovered = 8;  // Oldest submaps: a few ms.
-constexpr double kLearned = 0.1;              // Weight of the newest piece in the mean size of a block.
+constexpr double kLearned = 0.1;              // Weight of the newest piece in the mean size of a block,
+constexpr double kLearnedFrom = 100.0;        // if it has so many.
 
 /// The voxels of 0.4 m of a block of which any part is in these of 0.2 m; each is the first of its eight.
 std::uint64_t halved(std::uint64_t voxels) {
@@ -45,6 +46,10 @@ void BlockSource::Place::forget(std::uint16_t peer) {
   for (std::uint16_t* by :
        {&up_to_date, &had_by, &base_by, &missed_by, &seen_by, &coarse_by, &coarse_missed_by})
     *by = static_cast<std::uint16_t>(*by & ~peer);
+}
+
+bool BlockSource::Place::lacks_coarse(std::uint16_t peer) const {
+  return (halved(known) & ~((coarse_by & peer) != 0 ? coarse_known : 0)) != 0;
 }
 
 void BlockSource::open(std::uint32_t submap, const SubmapPlace& place) {
@@ -85,11 +90,12 @@ BlockVotes BlockSource::votes_of(const Cell& cell, const Place& place,
   return votes;
 }
 
-void BlockSource::add_missing(Peer& peer, const Cell& cell, const Place& place) {
+bool BlockSource::add_missing(Peer& peer, const Cell& cell, const Place& place) {
   peer.forget(place.change);
   const std::uint64_t has = (place.up_to_date & peer.bit) != 0 ? place.sent_known : 0;
   const bool grows = (halved(place.known) & ~halved(has)) != 0;
   (grows ? peer.unseen : peer.changed)[place.change] = cell;
+  return grows && (place.is_fine(peer.bit) || place.lacks_coarse(peer.bit));
 }
 
 void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& block, std::uint32_t revision) {
@@ -105,7 +111,7 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
     place.submaps.insert(std::upper_bound(place.submaps.begin(), place.submaps.end(), submap), submap);
   const BlockVotes votes = votes_of(cell, place);
   if (place.change == 0 || votes.known() != place.known || votes.occupied() != place.occupied) {
-    bool lacked = false;
+    bool lacked = false, grew = false;
     for (auto& [id, peer] : peers_) peer.forget(place.change);
     place.known = votes.known();
     place.occupied = votes.occupied();
@@ -113,11 +119,12 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
     place.changed = now_;
     for (auto& [id, peer] : peers_) {
       if ((place.up_to_date & peer.bit) != 0 && place.is_sent()) continue;
-      add_missing(peer, cell, place);
+      grew = add_missing(peer, cell, place) || grew;
       lacked = true;
     }
     if (!lacked) place.waits_since.reset();
     if (lacked && !place.waits_since) place.waits_since = now_;
+    if (grew && !place.grew_since) place.grew_since = now_;
   }
   prune(cell);
   if (blocks_.size() > params_.max_blocks) make_room();
@@ -254,9 +261,10 @@ void BlockSource::join(const PeerId& id) {
   peer.bit = 1;
   while ((used & peer.bit) != 0) peer.bit = static_cast<std::uint16_t>(peer.bit << 1);
   for (auto& [cell, place] : cells_) {
-    add_missing(peer, cell, place);
+    if (add_missing(peer, cell, place) && !place.grew_since) place.grew_since = now_;
     if (!place.waits_since) place.waits_since = now_;
   }
+  peer.behind = peer.unseen.size() > kBacklog;
 }
 
 void BlockSource::leave(const PeerId& id) {
@@ -277,26 +285,24 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
   std::uint16_t to = 0;
   for (const PeerId& id : peers)
     if (const auto peer = peers_.find(id); peer != peers_.end()) to |= peer->second.bit;
-  std::vector<Cell> chosen;
-  bool coarse = false;
+  std::vector<Part> chosen;
   // What the one that lacks most lacks may have to wait, while another one lacks what is due.
   for (auto id = peers.begin(); id != peers.end() && chosen.empty(); ++id) {
     const auto peer = peers_.find(*id);
     if (peer == peers_.end()) continue;
     if (is_coarse_first(peer->second, max_bytes)) chosen = choose_coarse(peer->second);
-    coarse = !chosen.empty();
-    if (!coarse) chosen = choose(peer->second, max_bytes, now);
+    if (chosen.empty()) chosen = choose(peer->second, max_bytes, now);
   }
   if (chosen.empty()) return std::nullopt;
-  const auto named = first_.find(chosen.front().group);
-  const std::uint32_t submap =
-      named != first_.end() ? named->second : static_cast<std::uint32_t>(chosen.front().group);
+  const std::uint64_t group = chosen.front().cell.group;
+  const auto named = first_.find(group);
+  const std::uint32_t submap = named != first_.end() ? named->second : static_cast<std::uint32_t>(group);
   // One revision for all blocks takes no space, and is newer than all that was sent before.
   const auto newest = static_cast<std::uint32_t>(++changes_);
   std::vector<BlockUpdate> updates;
-  for (const Cell& cell : chosen) {
-    const Place& place = cells_.at(cell);
-    updates.push_back({{ref_in(cell, submap).index, place.known, place.occupied}, newest});
+  for (const Part& part : chosen) {
+    const Place& place = cells_.at(part.cell);
+    updates.push_back({{ref_in(part.cell, submap).index, place.known, place.occupied}, newest, part.coarse});
   }
   const auto find_base = [&](const BlockIndex& index) -> std::optional<perception::CoarseBlock> {
     const Place& place = cells_.at(cell_of({submap, index}));
@@ -304,38 +310,56 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
     return perception::CoarseBlock{index, place.base_known, place.base_occupied};
   };
   const SubmapPlace name = place_of(submap);
-  auto packed = perception::pack({params_.robot, name.start, name.index}, updates, max_bytes, coarse ? 1 : 2,
-                                 coarse ? perception::FindBase() : find_base);
+  auto packed = perception::pack({params_.robot, name.start, name.index}, updates, max_bytes, find_base);
   if (packed.count == 0) return std::nullopt;
   chosen.resize(packed.count);
-  if (!coarse) learn(chosen, to, packed.bytes.size());
-  Flight& flight = flights_[++tokens_];
-  flight.coarse = coarse;
-  for (const Cell& cell : chosen) {
-    Place& place = cells_.at(cell);
-    flight.parts.push_back({cell, place.change});
-    if (coarse)
-      place.coarse_by |= to;
+  learn(chosen, to, packed.bytes.size());
+  for (Part& part : chosen) {
+    Place& place = cells_.at(part.cell);
+    part.change = place.change;
+    if (part.coarse)
+      note_coarse(place, to);
     else
-      note_sent(cell, place, to);
+      note_sent(part.cell, place, to);
   }
+  flights_[++tokens_].parts = std::move(chosen);
   return Content{tokens_, std::move(packed.bytes)};
 }
 
-void BlockSource::learn(const std::vector<Cell>& sent, std::uint16_t to, std::size_t bytes) {
-  const auto changes = static_cast<double>(std::count_if(
-      sent.begin(), sent.end(), [&](const Cell& cell) { return cells_.at(cell).has_base(to); }));
-  const double wholes = static_cast<double>(sent.size()) - changes;
-  const double expected = wholes * whole_bytes_ + changes * change_bytes_;
-  const double factor = static_cast<double>(bytes) / expected - 1.0;
-  whole_bytes_ *= 1.0 + kLearned * factor * wholes * whole_bytes_ / expected;
-  change_bytes_ *= 1.0 + kLearned * factor * changes * change_bytes_ / expected;
+BlockSource::Bytes BlockSource::bytes_of(const std::vector<Part>& parts, std::uint16_t to) const {
+  Bytes out;
+  for (const Part& part : parts)
+    (part.coarse ? out.coarse : cells_.at(part.cell).has_base(to) ? out.changes : out.wholes) += 1.0;
+  out.coarse *= coarse_bytes_;
+  out.changes *= change_bytes_;
+  out.wholes *= whole_bytes_;
+  return out;
+}
+
+void BlockSource::learn(const std::vector<Part>& sent, std::uint16_t to, std::size_t bytes) {
+  const Bytes expected = bytes_of(sent, to);
+  const double all = expected.sum() - Bytes::kHeader;
+  const double factor = (static_cast<double>(bytes) - Bytes::kHeader) / all - 1.0;
+  const double weight = std::min(1.0, static_cast<double>(sent.size()) / kLearnedFrom) * kLearned;
+  coarse_bytes_ *= 1.0 + weight * factor * expected.coarse / all;
+  change_bytes_ *= 1.0 + weight * factor * expected.changes / all;
+  whole_bytes_ *= 1.0 + weight * factor * expected.wholes / all;
+}
+
+void BlockSource::note_coarse(Place& place, std::uint16_t to) {
+  const std::uint64_t known = halved(place.known);
+  if (known != place.coarse_known) place.coarse_by = place.coarse_missed_by = 0;
+  place.coarse_known = known;
+  place.coarse_change = place.change;
+  place.coarse_by |= to;
+  place.grew_since.reset();
 }
 
 void BlockSource::note_sent(const Cell& cell, Place& place, std::uint16_t to) {
   // A silent peer that acknowledged the same state still has it.
   const auto has = static_cast<std::uint16_t>(place.is_sent() ? place.up_to_date & place.had_by : 0);
   place.waits_since.reset();
+  place.grew_since.reset();
   place.sent_known = place.known;
   place.sent_occupied = place.occupied;
   place.sent_change = place.change;
@@ -355,7 +379,7 @@ void BlockSource::acknowledged(const PeerId& id, std::uint64_t token) {
   if (peer == peers_.end() || flight == flights_.end()) return;
   for (const Part& part : flight->second.parts) {
     const auto place = cells_.find(part.cell);
-    if (place != cells_.end() && place->second.sent_change == part.change && !flight->second.coarse)
+    if (place != cells_.end() && place->second.sent_change == part.change && !part.coarse)
       place->second.acknowledge(peer->second.bit);
   }
 }
@@ -369,20 +393,23 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
     const auto found = cells_.find(part.cell);
     if (found == cells_.end()) continue;
     Place& place = found->second;
-    if (flight->second.coarse) {
+    // A newer state went out since, or it has this one from another piece.
+    if (part.coarse ? place.coarse_change != part.change
+                    : place.sent_change != part.change || (place.had_by & bit) != 0)
+      continue;
+    place.grew_since = Time(Duration::min() / 2);  // Waits are for what arrived.
+    if (part.coarse) {
       if ((place.coarse_missed_by & bit) == 0) place.coarse_by &= static_cast<std::uint16_t>(~bit);
       place.coarse_missed_by |= bit;
       peer->second.coarse_below = std::max(peer->second.coarse_below, place.change + 1);
-      continue;
+    } else {
+      place.waits_since = place.grew_since;
+      // Once may be an accident; twice: the peer may have another state than is thought here.
+      if ((place.missed_by & bit) != 0) place.base_by &= static_cast<std::uint16_t>(~bit);
+      place.missed_by |= bit;
+      place.up_to_date &= static_cast<std::uint16_t>(~bit);
+      add_missing(peer->second, part.cell, place);
     }
-    if (place.sent_change != part.change) continue;  // A newer state went out since.
-    if ((place.had_by & bit) != 0) continue;         // It has it from another piece.
-    // Once may be an accident; twice: the peer may have another state than is thought here.
-    if ((place.missed_by & bit) != 0) place.base_by &= static_cast<std::uint16_t>(~bit);
-    place.missed_by |= bit;
-    place.up_to_date &= static_cast<std::uint16_t>(~bit);
-    place.waits_since = Time(Duration::min() / 2);  // The hold is for what arrived.
-    add_missing(peer->second, part.cell, place);
     peer->second.rests_until.reset();
     peer->second.round_ends.reset();
     peer->second.changed_rests_until.reset();

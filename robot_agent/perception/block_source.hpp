@@ -20,17 +20,18 @@ struct BlockSourceParams {
   std::uint64_t start{};            ///< SubmapKey::start of submaps that are not named by open().
   std::size_t max_blocks{200'000};  ///< Blocks that are stored, [64, 10^7]; see BlockSource::update.
   // A place of which a station knows less than the robot goes when it has not changed for `settle`, at the
-  // latest after `wait`: while a robot passes, its blocks grow with every scan. A place that shows something
-  // else goes after `hold` without a change, at the latest after `max_hold`. It waits until it is part of a
-  // full piece, or did not change for twice that time. Pieces that are not full go once in a `round`. On
-  // links with small frames `wait` and `round` are four times as long, as a header takes a third of a piece.
+  // latest after `wait`: while a robot passes, its blocks grow with every scan. The first time, it goes in
+  // voxels of 0.4 m. A place that shows something else, or more in voxels of 0.2 m, goes after `hold` without
+  // a change, at the latest after `max_hold`. It waits until it is part of a full piece, or did not change
+  // for twice that time. Pieces that are not full go once in a `round`. On links with small frames `wait` and
+  // `round` are four times as long, as a header takes a third of a piece.
   Duration settle{2s};
   Duration wait{2200ms};
   Duration round{2s};
   Duration hold{30s};
   Duration max_hold{180s};
   double fill{0.8};  ///< Part of a piece from which on it is full, [0, 1].
-  /// A station that lacks more than fills so many pieces gets voxels of 0.4 m first.
+  /// A station that lacks more than fills so many pieces gets voxels of 0.4 m of all of it first.
   std::size_t coarse_pieces{64};
 };
 
@@ -54,12 +55,13 @@ struct BlockRegion {
 /// Submaps of one group move together, and lie in one lattice: a station gets the merge of all of them, as
 /// blocks of the group's first submap. So a place is sent once, however many submaps saw it, and again only
 /// if the merge shows something else. Blocks with voxels of 0.4 m of which a station knows nothing go first,
-/// the newest of them first; every fourth piece is for what changed. Blocks wait until they fill a piece,
+/// the newest of them first; every fourth piece is for voxels of 0.2 m first. While a block still changes, a
+/// station gets its voxels of 0.4 m, and those of 0.2 m once it rests. Blocks wait until they fill a piece,
 /// within the bounds of BlockSourceParams. While a station is behind by more than kBacklog blocks, those in
 /// the focus go before others, and surfaces before free space; while it is behind by more than
 /// `coarse_pieces` pieces, it first gets voxels of 0.4 m of all that it lacks. Of a block whose last state it
-/// acknowledged, a station is sent what changed. All blocks of a piece are of one group. The map outlives the
-/// component that makes it. Submaps are numbered by age.
+/// acknowledged, a station is sent what changed. All blocks of a piece are of one group. The map outlives
+/// the component that makes it. Submaps are numbered by age.
 class BlockSource final : public transfer::Source {
  public:
   static constexpr std::size_t kMaxPeers = 16;
@@ -148,15 +150,20 @@ class BlockSource final : public transfer::Source {
     std::uint16_t base_by{};    ///< Bit of each peer that has exactly that, as far as is known.
     std::uint16_t missed_by{};  ///< Bit of each peer for which changes to that were lost once.
     std::uint16_t seen_by{};    ///< Bit of each peer that acknowledged any state of it.
-    std::uint16_t
-        coarse_by{};  ///< Bit of each peer to which it went in voxels of 0.4 m, unless that was lost.
+    std::uint64_t coarse_known{}, coarse_change{};  ///< As it went in voxels of 0.4 m last, see halved().
+    std::uint16_t coarse_by{};          ///< Bit of each peer to which that went, unless it was lost.
     std::uint16_t coarse_missed_by{};   ///< Bit of each peer for which that was lost: it is tried once more.
     std::optional<Time> waits_since{};  ///< Since then some peer lacks its present state.
+    std::optional<Time> grew_since{};   ///< Since then some peer lacks voxels of 0.4 m.
     Time changed{};
 
     bool is_sent() const { return sent_change != 0 && sent_known == known && sent_occupied == occupied; }
     /// Whether the state that was sent last neither arrived at these peers nor was lost.
     bool is_on_its_way(std::uint16_t to) const { return (up_to_date & ~had_by & to) != 0; }
+    /// Whether a peer has, or gets, any state of it in voxels of 0.2 m.
+    bool is_fine(std::uint16_t peer) const { return ((seen_by | up_to_date) & peer) != 0; }
+    /// Whether it shows voxels of 0.4 m that were not sent to a peer.
+    bool lacks_coarse(std::uint16_t peer) const;
     /// Whether these peers can be sent what changed.
     bool has_base(std::uint16_t to) const { return (to & ~base_by) == 0 && (base_known & ~known) == 0; }
     void acknowledge(std::uint16_t by);
@@ -165,7 +172,7 @@ class BlockSource final : public transfer::Source {
   /// What one peer lacks, by number of the change.
   struct Peer {
     std::uint16_t bit{};
-    std::map<std::uint64_t, Cell> unseen{};   ///< With voxels of 0.4 m of which it knows nothing.
+    std::map<std::uint64_t, Cell> unseen{};   ///< With voxels of 0.4 m of which it has none of 0.2 m.
     std::map<std::uint64_t, Cell> changed{};  ///< Others.
     std::optional<Time> rests_until{};  ///< There was not enough for a piece when it was looked at last.
     std::optional<Time> changed_rests_until{};  ///< Nothing in `changed` was due then.
@@ -176,17 +183,25 @@ class BlockSource final : public transfer::Source {
         focus_rests_until{};  ///< It lacked nothing of the focus when that was looked at last.
     std::uint64_t coarse_below{
         UINT64_MAX};  ///< Those of `unseen` with earlier changes go next as coarse ones.
+    bool behind{};    ///< More than kBacklog of `unseen` could go.
 
     void forget(std::uint64_t change) { unseen.erase(change), changed.erase(change); }
   };
+  /// A place in a piece.
   struct Part {
     Cell cell{};
-    std::uint64_t change{};
+    bool coarse{};           ///< In voxels of 0.4 m.
+    std::uint64_t change{};  ///< Of the state that was sent.
   };
   /// A piece on its way.
   struct Flight {
     std::vector<Part> parts{};
-    bool coarse{};
+  };
+  /// What the blocks of a piece are expected to take.
+  struct Bytes {
+    static constexpr double kHeader = 32.0;
+    double coarse{}, changes{}, wholes{};
+    double sum() const { return kHeader + coarse + changes + wholes; }
   };
   SubmapPlace place_of(std::uint32_t submap) const;
   Cell cell_of(const Ref& ref) const;
@@ -194,25 +209,36 @@ class BlockSource final : public transfer::Source {
   Ref ref_in(const Cell& cell, std::uint32_t submap) const;
   /// What the merge of these submaps shows of a cell.
   BlockVotes votes_of(const Cell& cell, const Place& place, std::optional<std::uint32_t> without = {}) const;
-  /// Notes that a peer lacks the present state of a place.
-  static void add_missing(Peer& peer, const Cell& cell, const Place& place);
+  /// Notes that a peer lacks the present state of a place. Returns whether it lacks voxels of 0.4 m.
+  static bool add_missing(Peer& peer, const Cell& cell, const Place& place);
   /// Notes that the present state of a place went to these peers.
   void note_sent(const Cell& cell, Place& place, std::uint16_t to);
+  static void note_coarse(Place& place, std::uint16_t to);
   /// Takes the length of a piece into the mean lengths of blocks.
-  void learn(const std::vector<Cell>& sent, std::uint16_t to, std::size_t bytes);
+  void learn(const std::vector<Part>& sent, std::uint16_t to, std::size_t bytes);
+  Bytes bytes_of(const std::vector<Part>& parts, std::uint16_t to) const;
   enum class Due { no, yes, late };
-  Due due(const Peer& peer, const Cell& cell, Duration rest, Duration flush, Duration latest, Time now) const;
+  struct Waits {
+    Duration rest{}, flush{}, latest{};
+  };
+  /// `since`: since when it waits.
+  static Due due(const Place& place, std::optional<Time> since, const Waits& waits, Time now);
+  Waits held() const { return {params_.hold, 2 * params_.hold, params_.max_hold}; }
+  /// How a place of Peer::unseen is to go. refine: it went in voxels of 0.4 m.
+  enum class Stage { none, coarse, fine, refine };
+  Stage stage_of(const Place& place, std::uint16_t peer, Time now) const;
   struct Choice;
   /// Whether a peer is to have voxels of 0.4 m of all that it lacks before any of 0.2 m.
   bool is_coarse_first(const Peer& peer, std::size_t max_bytes) const;
-  /// Cells for a piece, all of one group. Defined in block_choice.cpp, as all that it calls.
-  std::vector<Cell> choose(Peer& peer, std::size_t max_bytes, Time now);
-  std::vector<Cell> choose_coarse(Peer& peer);
+  /// Places for a piece, all of one group. Defined in block_choice.cpp, as all that it calls.
+  std::vector<Part> choose(Peer& peer, std::size_t max_bytes, Time now);
+  std::vector<Part> choose_coarse(Peer& peer);
   void add_focused(Peer& peer, Time now, Choice& out);
   /// Adds what a peer lacks of a region at one x; returns how many cells were looked at.
-  std::size_t add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Choice& out) const;
+  std::size_t add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Time now,
+                        Choice& out) const;
   static void begin_focus(Peer& peer);
-  void add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const;
+  void add_unseen(Peer& peer, Duration wait, Time now, Choice& out) const;
   void add_changed(Peer& peer, Time now, Choice& out);
   /// Erases a block; what was seen stays as it is.
   void erase(const Ref& ref);
@@ -233,8 +259,8 @@ class BlockSource final : public transfer::Source {
   std::map<std::uint64_t, Flight> flights_{};
   std::vector<BlockRegion> focus_{};
   Time now_{};
-  /// Of a block in a piece, in the mean: as a whole, and what changed.
-  double whole_bytes_{4.0}, change_bytes_{2.0};
+  /// Of a block in a piece, in the mean: as a whole, what changed, and in voxels of 0.4 m.
+  double whole_bytes_{4.0}, change_bytes_{2.0}, coarse_bytes_{1.0};
   std::uint64_t changes_{};
   std::uint64_t tokens_{};
   std::uint64_t dropped_{};

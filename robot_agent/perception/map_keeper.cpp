@@ -60,6 +60,7 @@ MapKeeper::MapKeeper(MapKeeperParams params, std::unique_ptr<MapDisk> disk)
 LoadedMap MapKeeper::load() {
   if (!disk_) return {};
   LoadedMap loaded = disk_->load();
+  blocks_.tick(Time(Duration::min() / 2));  // What is loaded does not change any more.
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint64_t> groups;
   std::uint64_t newest = 0;
   for (perception::StoredSubmap& stored : loaded.submaps) {

@@ -60,7 +60,8 @@ class BlockCulling : public testing::Test {
         for (const auto& update : piece->blocks) {
           ++received[peer];
           auto& known = stations[peer][piece->key.index][update.block.index];
-          if (update.revision > known.revision) known = update;
+          if (update.revision > known.revision && (!update.coarse || known.coarse || known.revision == 0))
+            known = update;
         }
         source.acknowledged(peer, content->token);
       }

@@ -148,14 +148,14 @@ TEST_F(BlockSourceTest, ALostPieceIsMissingAgainInItsNewestState) {
   put(0, 1);
   (void)next({kOne}, token);
   EXPECT_EQ(source.missing(kOne), 0U);
-  put(0, 3);
+  put(0, 0x33);
   source.lost(kOne, token);
   source.settled(token);
   EXPECT_EQ(source.missing(kOne), 1U);
-  now += 2s;
+  now += 31s;
   const auto piece = next({kOne}, token);
   ASSERT_EQ(piece.blocks.size(), 1U);
-  EXPECT_EQ(piece.blocks[0].block.known, 3U);
+  EXPECT_EQ(piece.blocks[0].block.known, 0x33U);
 }
 
 TEST_F(BlockSourceTest, ABlockThatChangesOnItsWayIsSentAgainLater) {
@@ -189,7 +189,7 @@ TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrSomeSeconds) {
   source.acknowledged(kOne, token);
   source.tick(now);
   Random random(1);
-  for (int x = 1; x < 300; ++x) source.update(0, {{x, 0, 0}, kAll, random.next()});
+  for (int x = 1; x < 990; ++x) source.update(0, {{x, 0, 0}, kAll, random.next()});
   now += 2100ms;
   EXPECT_GT(next({kOne}, token).blocks.size(), 50U) << "they fill one";
 }
@@ -359,6 +359,70 @@ TEST_F(BlockChangesTest, AStationThatHasNothingGetsWholeBlocks) {
   EXPECT_FALSE(is_change({kTwo, kOne}));
 }
 
+class GrowingTest : public BlockSourceTest {
+ protected:
+  GrowingTest() {
+    source.tick(now);
+    source.join(kOne);
+    for (int x = 0; x < 60; ++x) put(x, 0x0033);
+  }
+  /// The blocks of the next piece by size of voxels; it arrives.
+  struct Sent {
+    std::size_t coarse{}, fine{};
+    bool operator==(const Sent&) const = default;
+  };
+  Sent arrives(Duration later, bool lost = false) {
+    now += later;
+    source.tick(now);
+    Sent out;
+    std::uint64_t sent = 0;
+    for (const auto& update : next({kOne}, sent).blocks) ++(update.coarse ? out.coarse : out.fine);
+    if (sent == 0) return out;
+    lost ? source.lost(kOne, sent) : source.acknowledged(kOne, sent);
+    source.settled(sent);
+    return out;
+  }
+};
+
+TEST_F(GrowingTest, GoInLargeVoxelsAndInSmallOnesOnceTheyRest) {
+  EXPECT_EQ(arrives(3s), (Sent{60, 0}));
+  EXPECT_EQ(source.missing(kOne), 60U);
+  for (int x = 0; x < 60; ++x) put(x, 0x0011);
+  EXPECT_EQ(arrives(10s), Sent{}) << "no other voxel of 0.4 m";
+  for (int x = 0; x < 40; ++x) put(x, 0x00ff);
+  EXPECT_EQ(arrives(3s), (Sent{40, 0}));
+  EXPECT_EQ(arrives(60s), (Sent{0, 60}));
+  EXPECT_TRUE(source.complete(kOne, 0));
+}
+
+TEST_F(GrowingTest, BlocksOfBothSizesShareAPiece) {
+  EXPECT_EQ(arrives(3s), (Sent{60, 0}));
+  now += 61s;
+  source.tick(now);
+  for (int x = 60; x < 90; ++x) put(x, 0x0033);
+  EXPECT_EQ(arrives(3s), (Sent{30, 60}));
+}
+
+TEST_F(GrowingTest, LargeVoxelsThatWereLostGoOnceMore) {
+  EXPECT_EQ(arrives(3s, true), (Sent{60, 0}));
+  EXPECT_EQ(arrives(1s, true), (Sent{60, 0}));
+  EXPECT_EQ(arrives(5s), Sent{}) << "a station that takes none is not to be kept from the small ones";
+  EXPECT_EQ(arrives(60s), (Sent{0, 60}));
+}
+
+TEST_F(GrowingTest, SmallVoxelsThatWereLostGoAtOnce) {
+  EXPECT_EQ(arrives(3s), (Sent{60, 0}));
+  EXPECT_EQ(arrives(61s, true), (Sent{0, 60}));
+  EXPECT_EQ(arrives(1s), (Sent{0, 60}));
+}
+
+TEST_F(GrowingTest, WhatGrowsInSmallVoxelsGoesInSmallOnes) {
+  EXPECT_EQ(arrives(3s), (Sent{60, 0}));
+  EXPECT_EQ(arrives(61s), (Sent{0, 60}));
+  for (int x = 0; x < 60; ++x) put(x, 0x00ff);
+  EXPECT_EQ(arrives(3s), (Sent{0, 60}));
+}
+
 class CoarseFirstTest : public BlockSourceTest {
  protected:
   static constexpr int kBlocks = 25'000;
@@ -394,7 +458,7 @@ TEST_F(CoarseFirstTest, AStationThatLacksMuchGetsLargeVoxelsOfAllFirst) {
     const bool arrived = pieces % 5 != 0;
     settle(arrived);
     for (const auto& update : got->blocks) {
-      if (got->level == 1) {
+      if (update.coarse) {
         EXPECT_TRUE(fine.empty());
         if (arrived) ++coarse[update.block.index];
       } else if (arrived) {
@@ -417,7 +481,7 @@ TEST_F(CoarseFirstTest, WhatIsKnownInSmallVoxelsNeverComesInLargeOnes) {
   for (int pieces = 0; pieces < 5; ++pieces) {
     const auto got = piece();
     ASSERT_TRUE(got);
-    EXPECT_EQ(got->level, 2);
+    for (const auto& update : got->blocks) EXPECT_FALSE(update.coarse);
     settle(true);
   }
 }

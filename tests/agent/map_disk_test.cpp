@@ -23,7 +23,7 @@ std::vector<std::string> submap_files(const store::Disk& disk) {
 TEST(MapDisk, AMapSurvivesARestartOfTheAgentUnderItsOldNames) {
   MapBench bench;
   bench.drive(0, 40);
-  bench.run(21s);
+  bench.run(31s);  // Then the blocks rest, and go in small voxels.
   const std::size_t blocks = bench.keeper->blocks(), submaps = bench.keeper->submaps();
   MapBench::Station before;
   bench.run(20s, &before);

@@ -43,13 +43,31 @@ TEST_F(ChunkStoreTest, TheHigherRevisionWinsInAnyOrder) {
 
 TEST_F(ChunkStoreTest, LargeVoxelsOnlyFillWhatIsNotThere) {
   EXPECT_TRUE(chunks.take("r1", piece_of(key, {0, 0, 0}, 3, 1, 9)));
-  MapPiece coarse{key, {{{{0, 0, 0}, kAll, 0}, 10}, {{{1, 0, 0}, kAll, 0}, 10}}, 1};
+  MapPiece coarse{key, {{{{0, 0, 0}, kAll, 0}, 10, true}, {{{1, 0, 0}, kAll, 0}, 10, true}}};
   EXPECT_TRUE(chunks.take("r1", coarse));
   const auto& blocks = chunks.robots().at("r1").submaps.at(key).blocks;
   EXPECT_EQ(blocks.at({0, 0, 0}).known, 3U) << "another station lacks it, this one does not";
   EXPECT_EQ(blocks.at({1, 0, 0}).known, kAll);
   EXPECT_TRUE(chunks.take("r1", piece_of(key, {1, 0, 0}, 5, 1, 9))) << "it was sent before, and comes later";
   EXPECT_EQ(blocks.at({1, 0, 0}).known, 5U);
+}
+
+TEST_F(ChunkStoreTest, LargeVoxelsAddToEachOther) {
+  constexpr std::uint64_t kLow = 0x0033'0033, kHigh = kLow << 32;
+  const auto large = [this](std::uint64_t known, std::uint64_t occupied, std::uint32_t revision) {
+    return MapPiece{key, {{{{2, 0, 0}, known, occupied}, revision, true}}};
+  };
+  EXPECT_TRUE(chunks.take("r1", large(kLow | kHigh, kHigh, 12)));
+  EXPECT_TRUE(chunks.take("r1", large(kLow, kLow, 15)));
+  const auto& block = chunks.robots().at("r1").submaps.at(key).blocks.at({2, 0, 0});
+  EXPECT_EQ(block.known, kLow | kHigh) << "the later piece was made before, and came later";
+  EXPECT_EQ(block.occupied, kLow | kHigh);
+  EXPECT_TRUE(chunks.take("r1", piece_of(key, {2, 0, 0}, 5, 1, 9)));
+  EXPECT_EQ(block.known, 5U);
+  ChunkStore same;
+  EXPECT_TRUE(same.count("r1", 1, 0, Time{}));
+  EXPECT_TRUE(same.take("r1", piece_of(key, {2, 0, 0}, 5, 1, 9)));
+  EXPECT_EQ(chunks.robots().at("r1").digest, same.robots().at("r1").digest);
 }
 
 TEST_F(ChunkStoreTest, AnOlderPoseChangesNothing) {

@@ -257,7 +257,7 @@ TEST_F(MapReplicaTest, AFileOfChangesIsWrittenAgainWhileSomeWait) {
     for (int x = 0; x < 30; ++x)
       if (random.chance(0.4)) blocks.push_back({{{x, 0, 0}, ~0ULL, random.next()}, n});
     ASSERT_TRUE(take(transfer::Kind::map_blocks,
-                     perception::pack(key, blocks, transfer::kMaxPieceBytes, 2, find_base).bytes)
+                     perception::pack(key, blocks, transfer::kMaxPieceBytes, find_base).bytes)
                     .ok());
     if (n % 3 == 0) run(200ms);
     ASSERT_LE(file_bytes(), params.max_bytes);

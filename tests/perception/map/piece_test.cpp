@@ -113,14 +113,36 @@ TEST(Piece, PacksAsManyBlocksAsFit) {
 
 TEST(Piece, OfLargerVoxelsShowsEachPartAsTheWhole) {
   const CoarseBlock one{{1, 2, 3}, 0x21, 0x20}, other{{1, 2, 4}, 1ULL << 63, 0};
-  const auto piece = decode(encode(MapPiece{kKey, {{one, 4}, {other, 4}}, 1}));
+  const auto piece = decode(encode(MapPiece{kKey, {{one, 4, true}, {other, 4, true}}}));
   ASSERT_TRUE(piece);
-  EXPECT_EQ(piece->level, 1);
   const CoarseBlock whole{{1, 2, 3}, 0x0033'0033ULL, 0x0033'0033ULL},
       corner{{1, 2, 4}, 0xcc00'cc00ULL << 32, 0};
-  EXPECT_EQ(piece->blocks, (std::vector<BlockUpdate>{{whole, 4}, {corner, 4}}));
+  EXPECT_EQ(piece->blocks, (std::vector<BlockUpdate>{{whole, 4, true}, {corner, 4, true}}));
+  EXPECT_EQ(piece->blocks.front().stored_revision(), BlockUpdate::kCoarseRevision);
   const auto blocks = corridor(200);
-  EXPECT_LT(encode(MapPiece{kKey, blocks, 1}).size(), encode(MapPiece{kKey, blocks}).size() * 3 / 4);
+  auto large = blocks;
+  for (BlockUpdate& update : large) update.coarse = true;
+  EXPECT_LT(encode(MapPiece{kKey, large}).size(), encode(MapPiece{kKey, blocks}).size() * 3 / 4);
+}
+
+TEST(Piece, MayHaveBlocksInLargeAndInSmallVoxels) {
+  auto blocks = corridor(200);
+  std::map<std::pair<SubmapKey, BlockIndex>, CoarseBlock> stored;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    blocks[i].coarse = i % 3 == 0;
+    if (i % 3 == 1) stored[{kKey, blocks[i].block.index}] = blocks[i].block;
+  }
+  const auto base = [&](const BlockIndex& index) -> std::optional<CoarseBlock> {
+    const auto found = stored.find({kKey, index});
+    return found != stored.end() ? std::optional(found->second) : std::nullopt;
+  };
+  const auto piece = decode(encode(MapPiece{kKey, blocks}, base),
+                            [&](const SubmapKey&, const BlockIndex& index) { return base(index); });
+  ASSERT_TRUE(piece) << piece.error().text;
+  auto wanted = sorted(blocks);
+  for (BlockUpdate& update : wanted)
+    if (update.coarse) update.block = in_large_voxels(update.block);
+  EXPECT_EQ(piece->blocks, wanted);
 }
 
 TEST(Piece, OfChangesNeedsWhatItChanges) {
@@ -135,7 +157,7 @@ TEST(Piece, OfChangesNeedsWhatItChanges) {
     return found != stored.end() ? std::optional(found->second) : std::nullopt;
   };
   const auto find_base = [&](const BlockIndex& index) { return find_stored(kKey, index); };
-  const auto packed = pack(kKey, blocks, kMaxPieceBytes, 2, find_base);
+  const auto packed = pack(kKey, blocks, kMaxPieceBytes, find_base);
   ASSERT_EQ(packed.count, blocks.size());
   EXPECT_LT(packed.bytes.size(), encode(MapPiece{kKey, blocks}).size());
   const auto piece = decode(packed.bytes, find_stored);
@@ -184,9 +206,9 @@ std::vector<std::uint8_t> piece_of(std::uint8_t version, std::uint8_t kind,
 TEST(Piece, IsRefusedWhenItsContentIsHostile) {
   const std::vector<std::uint8_t> whole = encode(MapPiece{kKey, corridor(20)});
   const std::vector<std::uint8_t> content(whole.begin() + 6, whole.end());
-  ASSERT_TRUE(decode(piece_of(4, whole[1], content)));
+  ASSERT_TRUE(decode(piece_of(5, whole[1], content)));
   EXPECT_EQ(decode(encode(SubmapPoses{})).reason(), Reason::malformed);
-  EXPECT_EQ(decode(piece_of(4, whole[1], std::vector<std::uint8_t>(1 << 20))).reason(), Reason::malformed);
+  EXPECT_EQ(decode(piece_of(5, whole[1], std::vector<std::uint8_t>(1 << 20))).reason(), Reason::malformed);
   EXPECT_EQ(decode(encode(MapPiece{{"", 1, 2}, {}})).reason(), Reason::malformed);
 }
 
@@ -196,7 +218,7 @@ TEST(Piece, OfAnotherVersionOrOtherTablesIsRefusedByName) {
   for (const int version : {0, 1, 2, 3, 255})
     EXPECT_EQ(decode(piece_of(static_cast<std::uint8_t>(version), whole[1], content)).reason(),
               Reason::wrong_protocol);
-  EXPECT_EQ(decode(piece_of(4, static_cast<std::uint8_t>(whole[1] + 0x10), content)).reason(),
+  EXPECT_EQ(decode(piece_of(5, static_cast<std::uint8_t>(whole[1] + 0x10), content)).reason(),
             Reason::wrong_protocol);
 }
 
@@ -211,12 +233,12 @@ TEST(Piece, RandomContentDoesNoHarm) {
     content[1] = 'r';
     // Small numbers at the beginning lead farther.
     if (n % 2 == 0 && content.size() > 14) content[10] = static_cast<std::uint8_t>(random() % 8);
-    if (const auto piece = decode(piece_of(4, kind, content))) {
+    if (const auto piece = decode(piece_of(5, kind, content))) {
       ++decoded;
       ASSERT_LE(piece->blocks.size(), kMaxPieceBlocks);
       for (const BlockUpdate& u : piece->blocks) ASSERT_EQ(u.block.occupied & ~u.block.known, 0u);
     }
-    if (const auto poses = decode_poses(piece_of(4, 2, content))) {
+    if (const auto poses = decode_poses(piece_of(5, 2, content))) {
       for (const SubmapPose& p : poses->poses) ASSERT_TRUE(p.T_map_submap.position.allFinite());
     }
   }
