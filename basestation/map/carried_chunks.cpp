@@ -46,7 +46,9 @@ void ChunkStore::put(Robot& robot, Submap& submap, const perception::SubmapKey& 
     carried_blocks_ -= block.carried;
   }
   const std::uint32_t revision = update.stored_revision();
-  const bool adds = !added && block.revision == kCoarse && revision == kCoarse;
+  // What the robot itself sends replaces what was carried, and all that is known comes again.
+  const bool adds =
+      !added && block.revision == kCoarse && revision == kCoarse && (carried || block.carried == 0);
   const perception::CoarseBlock now =
       adds ? merged({update.block.index, block.known, block.occupied}, update.block) : update.block;
   block = {now.known, now.occupied, revision, now_, carried ? 1U : 0U};
@@ -109,7 +111,8 @@ bool ChunkStore::take_carried(const std::string& carrier, perception::MapPiece& 
     const auto known = into->blocks.find(update.block.index);
     const bool is_new = known == into->blocks.end();
     const bool replaces_carried = !is_new && known->second.carried != 0;
-    if (!is_new && !perception::is_newer(known->second.known, known->second.revision, update)) return true;
+    if (!is_new && !is_newer(known->second.known, known->second.occupied, known->second.revision, update))
+      return true;
     if (!is_new && !replaces_carried && is_heard(*robot, now)) return true;
     if ((is_new && blocks_ >= params_.max_blocks) ||
         (!replaces_carried && carried_blocks_ >= params_.max_carried_blocks)) {

@@ -89,8 +89,8 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
         complete = false;
         continue;
       }
-    } else if (update.coarse ? known->second.revision != perception::BlockUpdate::kCoarseRevision
-                             : update.revision <= known->second.revision && known->second.carried == 0) {
+    } else if ((known->second.carried == 0 || update.coarse) &&
+               !is_newer(known->second.known, known->second.occupied, known->second.revision, update)) {
       continue;
     }
     put(robots_.at(robot), *into, piece.key, update, false);

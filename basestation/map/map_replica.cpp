@@ -38,8 +38,12 @@ void add_pieces(const std::string& name, const ChunkStore::Robot& robot, bool ca
     if (poses.poses.size() == perception::kMaxPiecePoses) add_poses();
     std::vector<perception::BlockUpdate> blocks;
     for (const auto& [index, block] : submap.blocks)
-      if ((block.carried != 0) == carried)
-        blocks.push_back({{index, block.known, block.occupied}, block.revision});
+      if ((block.carried != 0) == carried) {
+        const bool coarse = block.revision == perception::BlockUpdate::kCoarseRevision;
+        // Of a block in large voxels the revision does not matter, and equal ones take no space.
+        const std::uint32_t revision = !coarse ? block.revision : blocks.empty() ? 1 : blocks.back().revision;
+        blocks.push_back({{index, block.known, block.occupied}, revision, coarse});
+      }
     for (std::span<const perception::BlockUpdate> left(blocks); !left.empty();) {
       auto packed = perception::pack(key, left.first(std::min(left.size(), perception::kMaxPieceBlocks)),
                                      transfer::kMaxPieceBytes);

@@ -30,7 +30,7 @@ constexpr std::size_t kMaxPieceContent = 8192;  ///< Bytes of a piece, and of po
 /// it, as a piece goes to all stations, of which others may know more: they are stored under kCoarseRevision
 /// and added to each other, so that any state in voxels of 0.2 m replaces them, in any order.
 struct BlockUpdate {
-  static constexpr std::uint32_t kCoarseRevision = 0;
+  static constexpr std::uint32_t kCoarseRevision = 0;  ///< Of no block in voxels of 0.2 m.
   CoarseBlock block{};
   std::uint32_t revision{};
   bool coarse{};  ///< In voxels of 0.4 m, all eight parts of one the same.
@@ -46,16 +46,17 @@ struct MapPiece {
   std::vector<BlockUpdate> blocks{};
 };
 
-/// What two states of a block in voxels of 0.4 m show together; the later one wins where both know.
-inline CoarseBlock merged(const CoarseBlock& earlier, const CoarseBlock& later) {
-  return {later.index, earlier.known | later.known, (earlier.occupied & ~later.known) | later.occupied};
+/// What two states of a block in voxels of 0.4 m show together, in any order: what either shows occupied is.
+inline CoarseBlock merged(const CoarseBlock& one, const CoarseBlock& other) {
+  return {one.index, one.known | other.known, one.occupied | other.occupied};
 }
 
-/// Whether a state of a block is to be stored where one with these known voxels and this revision is.
-inline bool is_newer(std::uint64_t known, std::uint32_t revision, const BlockUpdate& update) {
+/// Whether a state of a block is to be stored where one with these voxels and this revision is.
+inline bool is_newer(std::uint64_t known, std::uint64_t occupied, std::uint32_t revision,
+                     const BlockUpdate& update) {
   if (revision != BlockUpdate::kCoarseRevision || update.stored_revision() != revision)
     return update.stored_revision() > revision;
-  return (update.block.known & ~known) != 0;
+  return (update.block.known & ~known) != 0 || (update.block.occupied & ~occupied) != 0;
 }
 
 /// Place of a submap.

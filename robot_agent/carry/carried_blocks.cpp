@@ -81,7 +81,7 @@ bool CarriedBlocks::take(const perception::MapPiece& piece) {
       ++blocks_;
       known = part.blocks.try_emplace(ref).first;
       for (const auto& [peer, slot] : slots_.all()) ++part.missing[slot];
-    } else if (!perception::is_newer(known->second.known, known->second.revision, update)) {
+    } else if (!is_newer(known->second.known, known->second.occupied, known->second.revision, update)) {
       continue;
     } else {
       // Also of an equal state: a station may have got another one between the two.
@@ -138,7 +138,8 @@ std::vector<CarriedBlocks::Candidate> CarriedBlocks::lacked(const Robot& robot, 
       if ((block.had_by & PeerSlots::bit(slot)) != 0 ||
           (!out.empty() && out.front().at.ref.submap != ref.submap))
         continue;
-      out.push_back({{i, ref, block.revision}, {{ref.index, block.known, block.occupied}, block.revision}});
+      out.push_back({{i, ref, block.revision},
+                     {{ref.index, block.known, block.occupied}, block.revision, block.revision == kCoarse}});
     }
   }
   // Equal revisions take no space, and neighbours little.
@@ -165,7 +166,11 @@ std::optional<transfer::Source::Content> CarriedBlocks::next(std::span<const Pee
   if (chosen.empty()) return std::nullopt;
   Robot& robot = robots_.at(flight.robot);
   std::vector<perception::BlockUpdate> updates;
-  for (const Candidate& candidate : chosen) updates.push_back(candidate.update);
+  for (const Candidate& candidate : chosen) {
+    updates.push_back(candidate.update);
+    // Of a block in large voxels the revision does not matter, and equal ones take no space.
+    if (candidate.update.coarse) updates.back().revision = chosen.front().update.revision;
+  }
   auto packed = perception::pack(robot.submaps[chosen.front().at.ref.submap], updates, max_bytes);
   if (packed.count == 0) return std::nullopt;
   for (std::size_t i = 0; i < packed.count; ++i) {

@@ -123,10 +123,10 @@ std::size_t BlockSource::add_slice(const Peer& peer, const BlockRegion& region, 
     const auto& [cell, place] = *it;
     if (cell.index.x != x || cell.index.y > region.high.y) break;
     if (cell.index.z < region.low.z || cell.index.z > region.high.z) continue;
-    if (!peer.unseen.contains(place.change)) continue;
-    const Stage stage = stage_of(place, peer.bit, now);
-    const bool may = stage == Stage::refine ? now - place.changed >= params_.hold : stage != Stage::none;
-    if (may && out.focused.insert(cell).second) out.add(cell, true, stage == Stage::coarse);
+    const bool rested = now - place.changed >= params_.hold && peer.resting.contains(place.change);
+    if (!rested && !peer.unseen.contains(place.change)) continue;
+    if (!place.is_on_its_way(peer.bit) && out.focused.insert(cell).second)
+      out.add(cell, true, !rested && goes_coarse(place, peer.bit, now));
   }
   return looked;
 }
@@ -148,40 +148,31 @@ void BlockSource::add_focused(Peer& peer, Time now, Choice& out) {
   if (slice == slices.size() && out.all.size() == before) peer.focus_rests_until = now + kFocusRest;
 }
 
-BlockSource::Stage BlockSource::stage_of(const Place& place, std::uint16_t peer, Time now) const {
-  // When it has arrived, what changed since is enough.
-  if (place.is_on_its_way(peer)) return Stage::none;
-  if (place.is_fine(peer)) return Stage::fine;
-  if (!place.lacks_coarse(peer)) return Stage::refine;
-  return now - place.changed >= params_.hold ? Stage::fine : Stage::coarse;
-}
-
-void BlockSource::add_unseen(Peer& peer, Duration wait, Time now, Choice& out) const {
-  struct Seen {
-    const Cell* cell{};
-    const Place* place{};
-    Stage stage{};
-    Due due{};
-  };
-  std::vector<Seen> seen;
-  std::size_t looked = 0, news = 0, all = 0;
+void BlockSource::add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const {
+  std::vector<std::pair<const Cell*, const Place*>> seen;
+  std::size_t looked = 0;
   for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < kLookedAt; ++it, ++looked) {
     const Place& place = cells_.at(it->second);
-    const Stage stage = stage_of(place, peer.bit, now);
-    if (stage == Stage::none || out.focused.contains(it->second)) continue;
-    seen.push_back({&it->second, &place, stage, {}});
-    news += stage != Stage::refine ? 1 : 0;
+    // When it has arrived, what changed since is enough.
+    if (!place.is_on_its_way(peer.bit) && !out.focused.contains(it->second))
+      seen.emplace_back(&it->second, &place);
   }
-  const Duration longest = (news < kFew ? 3 : 1) * wait;
-  for (Seen& s : seen) {
-    s.due = s.stage == Stage::refine
-                ? due(*s.place, s.place->waits_since, held(), now)
-                : due(*s.place, s.place->grew_since, {params_.settle, longest, longest}, now);
-    all += s.due != Due::no ? 1 : 0;
+  const Duration longest = (seen.size() < kFew ? 3 : 1) * wait;
+  for (const auto& [cell, place] : seen) {
+    const Due is_due = due(*place, place->grew_since, {params_.settle, longest, longest}, now);
+    if (is_due != Due::no) out.add(*cell, is_due == Due::late, goes_coarse(*place, peer.bit, now));
   }
-  peer.behind = all > kBacklog;
-  for (const Seen& s : seen)
-    if (s.due != Due::no) out.add(*s.cell, peer.behind || s.due == Due::late, s.stage == Stage::coarse);
+}
+
+void BlockSource::add_resting(const Peer& peer, Time now, Choice& out) const {
+  std::size_t looked = 0;
+  for (const auto& [change, cell] : peer.resting) {
+    if (looked++ >= kLookedAt) break;
+    const Place& place = cells_.at(cell);
+    if (place.is_on_its_way(peer.bit) || out.focused.contains(cell)) continue;
+    const Due is_due = due(place, place.waits_since, held(), now);
+    if (is_due != Due::no) out.add(cell, is_due == Due::late);
+  }
 }
 
 void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
@@ -197,18 +188,23 @@ void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
   if (added == 0) peer.changed_rests_until = now + kRest;
 }
 
-bool BlockSource::is_coarse_first(const Peer& peer, std::size_t max_bytes) const {
-  return whole_bytes_ * static_cast<double>(peer.unseen.size()) >
-         static_cast<double>(params_.coarse_pieces * max_bytes);
+bool BlockSource::is_coarse_first(Peer& peer, std::size_t max_bytes) const {
+  const bool begins = whole_bytes_ * static_cast<double>(peer.unseen.size()) >
+                      static_cast<double>(params_.coarse_pieces * max_bytes);
+  // It ends when the peer is not behind any more, as pieces are lost.
+  if (begins) peer.coarse_first = peer.behind = true;
+  if (!peer.behind) peer.coarse_first = false;
+  return peer.coarse_first;
 }
 
 std::vector<BlockSource::Part> BlockSource::choose_coarse(Peer& peer) {
   Choice choice;
-  for (auto it = peer.unseen.lower_bound(peer.coarse_below);
-       it != peer.unseen.begin() && choice.all.size() < kLookedAt;) {
+  std::size_t looked = 0;
+  for (auto it = peer.unseen.lower_bound(peer.coarse_below); it != peer.unseen.begin() && looked < kLookedAt;
+       ++looked) {
     --it;
     const Place& place = cells_.at(it->second);
-    const bool lacks = ((place.coarse_by | place.seen_by | place.up_to_date) & peer.bit) == 0;
+    const bool lacks = !place.is_fine(peer.bit) && place.lacks_coarse(peer.bit);
     if (lacks) choice.add(it->second, true, true);
     if (choice.all.empty()) peer.coarse_below = it->first;
   }
@@ -228,14 +224,21 @@ std::vector<BlockSource::Part> BlockSource::choose(Peer& peer, std::size_t max_b
   const std::ptrdiff_t first = std::ssize(choice.all);
   add_focused(peer, now, choice);
   const std::ptrdiff_t focused = std::ssize(choice.all);
+  if (changed_first) add_resting(peer, now, choice);
   add_unseen(peer, longer * params_.wait, now, choice);
+  if (!changed_first) add_resting(peer, now, choice);
+  peer.behind = std::ssize(choice.all) - first > static_cast<std::ptrdiff_t>(kBacklog);
   // Free space shows an operator less than surfaces.
   const auto is_surface = [this](const auto& candidate) { return cells_.at(candidate.cell).occupied != 0; };
   std::stable_partition(choice.all.begin() + first, choice.all.begin() + focused, is_surface);
   const auto free = std::stable_partition(choice.all.begin() + focused, choice.all.end(), is_surface);
-  if (peer.behind) choice.gather(focused, free - choice.all.begin());
+  if (peer.behind) {
+    choice.gather(focused, free - choice.all.begin());
+    for (auto candidate = choice.all.begin() + first; candidate != choice.all.end(); ++candidate)
+      candidate->late = true;
+  }
   if (!changed_first) add_changed(peer, now, choice);
-  if (!peer.behind) choice.late_first(0);
+  if (!peer.behind) choice.late_first(changed_first ? first : 0);
   if (!choice.all.empty()) {
     const auto candidates = choice.of_one_group();
     const bool late = std::any_of(candidates.begin(), candidates.end(), [](const auto& c) { return c.late; });

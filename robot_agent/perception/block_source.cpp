@@ -94,8 +94,9 @@ bool BlockSource::add_missing(Peer& peer, const Cell& cell, const Place& place) 
   peer.forget(place.change);
   const std::uint64_t has = (place.up_to_date & peer.bit) != 0 ? place.sent_known : 0;
   const bool grows = (halved(place.known) & ~halved(has)) != 0;
-  (grows ? peer.unseen : peer.changed)[place.change] = cell;
-  return grows && (place.is_fine(peer.bit) || place.lacks_coarse(peer.bit));
+  const bool rests = !place.is_fine(peer.bit) && !place.lacks_coarse(peer.bit);
+  (!grows ? peer.changed : rests ? peer.resting : peer.unseen)[place.change] = cell;
+  return grows && !rests;
 }
 
 void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& block, std::uint32_t revision) {
@@ -122,7 +123,7 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
       grew = add_missing(peer, cell, place) || grew;
       lacked = true;
     }
-    if (!lacked) place.waits_since.reset();
+    if (!lacked) place.waits_since.reset(), place.grew_since.reset();
     if (lacked && !place.waits_since) place.waits_since = now_;
     if (grew && !place.grew_since) place.grew_since = now_;
   }
@@ -276,7 +277,9 @@ void BlockSource::leave(const PeerId& id) {
 
 std::size_t BlockSource::missing(const PeerId& id) const {
   const auto found = peers_.find(id);
-  return found == peers_.end() ? 0 : found->second.unseen.size() + found->second.changed.size();
+  return found == peers_.end()
+             ? 0
+             : found->second.unseen.size() + found->second.resting.size() + found->second.changed.size();
 }
 
 std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerId> peers,
@@ -318,7 +321,7 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
     Place& place = cells_.at(part.cell);
     part.change = place.change;
     if (part.coarse)
-      note_coarse(place, to);
+      note_coarse(part.cell, place, to);
     else
       note_sent(part.cell, place, to);
   }
@@ -346,13 +349,15 @@ void BlockSource::learn(const std::vector<Part>& sent, std::uint16_t to, std::si
   whole_bytes_ *= 1.0 + weight * factor * expected.wholes / all;
 }
 
-void BlockSource::note_coarse(Place& place, std::uint16_t to) {
+void BlockSource::note_coarse(const Cell& cell, Place& place, std::uint16_t to) {
   const std::uint64_t known = halved(place.known);
   if (known != place.coarse_known) place.coarse_by = place.coarse_missed_by = 0;
   place.coarse_known = known;
   place.coarse_change = place.change;
   place.coarse_by |= to;
   place.grew_since.reset();
+  for (auto& [id, peer] : peers_)
+    if ((place.up_to_date & peer.bit) == 0 || !place.is_sent()) add_missing(peer, cell, place);
 }
 
 void BlockSource::note_sent(const Cell& cell, Place& place, std::uint16_t to) {
@@ -377,10 +382,17 @@ void BlockSource::acknowledged(const PeerId& id, std::uint64_t token) {
   const auto peer = peers_.find(id);
   const auto flight = flights_.find(token);
   if (peer == peers_.end() || flight == flights_.end()) return;
+  const std::uint16_t bit = peer->second.bit;
   for (const Part& part : flight->second.parts) {
-    const auto place = cells_.find(part.cell);
-    if (place != cells_.end() && place->second.sent_change == part.change && !part.coarse)
-      place->second.acknowledge(peer->second.bit);
+    const auto found = cells_.find(part.cell);
+    if (found == cells_.end() || part.coarse) continue;
+    Place& place = found->second;
+    if (place.sent_change == part.change) {
+      place.acknowledge(bit);
+    } else if (!place.is_fine(bit)) {
+      place.seen_by |= bit;  // It takes no voxels of 0.4 m any more.
+      add_missing(peer->second, part.cell, place);
+    }
   }
 }
 
@@ -397,9 +409,11 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
     if (part.coarse ? place.coarse_change != part.change
                     : place.sent_change != part.change || (place.had_by & bit) != 0)
       continue;
+    // Twice, it was lost for good: a station that takes none is not to be kept from the small ones.
+    if (part.coarse && (place.is_fine(bit) || (place.coarse_missed_by & bit) != 0)) continue;
     place.grew_since = Time(Duration::min() / 2);  // Waits are for what arrived.
     if (part.coarse) {
-      if ((place.coarse_missed_by & bit) == 0) place.coarse_by &= static_cast<std::uint16_t>(~bit);
+      place.coarse_by &= static_cast<std::uint16_t>(~bit);
       place.coarse_missed_by |= bit;
       peer->second.coarse_below = std::max(peer->second.coarse_below, place.change + 1);
     } else {
@@ -408,8 +422,8 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
       if ((place.missed_by & bit) != 0) place.base_by &= static_cast<std::uint16_t>(~bit);
       place.missed_by |= bit;
       place.up_to_date &= static_cast<std::uint16_t>(~bit);
-      add_missing(peer->second, part.cell, place);
     }
+    add_missing(peer->second, part.cell, place);
     peer->second.rests_until.reset();
     peer->second.round_ends.reset();
     peer->second.changed_rests_until.reset();

@@ -55,10 +55,10 @@ struct BlockRegion {
 /// Submaps of one group move together, and lie in one lattice: a station gets the merge of all of them, as
 /// blocks of the group's first submap. So a place is sent once, however many submaps saw it, and again only
 /// if the merge shows something else. Blocks with voxels of 0.4 m of which a station knows nothing go first,
-/// the newest of them first; every fourth piece is for voxels of 0.2 m first. While a block still changes, a
-/// station gets its voxels of 0.4 m, and those of 0.2 m once it rests. Blocks wait until they fill a piece,
-/// within the bounds of BlockSourceParams. While a station is behind by more than kBacklog blocks, those in
-/// the focus go before others, and surfaces before free space; while it is behind by more than
+/// the newest of them first; every fourth piece is first for what rested or changed. While a block still
+/// changes, a station gets its voxels of 0.4 m, and those of 0.2 m once it rests. Blocks wait until they fill
+/// a piece, within the bounds of BlockSourceParams. While a station is behind by more than kBacklog blocks,
+/// those in the focus go before others, and surfaces before free space; while it is behind by more than
 /// `coarse_pieces` pieces, it first gets voxels of 0.4 m of all that it lacks. Of a block whose last state it
 /// acknowledged, a station is sent what changed. All blocks of a piece are of one group. The map outlives
 /// the component that makes it. Submaps are numbered by age.
@@ -172,7 +172,8 @@ class BlockSource final : public transfer::Source {
   /// What one peer lacks, by number of the change.
   struct Peer {
     std::uint16_t bit{};
-    std::map<std::uint64_t, Cell> unseen{};   ///< With voxels of 0.4 m of which it has none of 0.2 m.
+    std::map<std::uint64_t, Cell> unseen{};   ///< With voxels of 0.4 m of which it knows nothing.
+    std::map<std::uint64_t, Cell> resting{};  ///< That went in voxels of 0.4 m, and in no others.
     std::map<std::uint64_t, Cell> changed{};  ///< Others.
     std::optional<Time> rests_until{};  ///< There was not enough for a piece when it was looked at last.
     std::optional<Time> changed_rests_until{};  ///< Nothing in `changed` was due then.
@@ -182,10 +183,11 @@ class BlockSource final : public transfer::Source {
     std::optional<Time>
         focus_rests_until{};  ///< It lacked nothing of the focus when that was looked at last.
     std::uint64_t coarse_below{
-        UINT64_MAX};  ///< Those of `unseen` with earlier changes go next as coarse ones.
-    bool behind{};    ///< More than kBacklog of `unseen` could go.
+        UINT64_MAX};      ///< Those of `unseen` with earlier changes go next as coarse ones.
+    bool coarse_first{};  ///< All that it lacks goes in voxels of 0.4 m first.
+    bool behind{};        ///< More than kBacklog of `unseen` and `resting` could go.
 
-    void forget(std::uint64_t change) { unseen.erase(change), changed.erase(change); }
+    void forget(std::uint64_t change) { unseen.erase(change), resting.erase(change), changed.erase(change); }
   };
   /// A place in a piece.
   struct Part {
@@ -213,7 +215,7 @@ class BlockSource final : public transfer::Source {
   static bool add_missing(Peer& peer, const Cell& cell, const Place& place);
   /// Notes that the present state of a place went to these peers.
   void note_sent(const Cell& cell, Place& place, std::uint16_t to);
-  static void note_coarse(Place& place, std::uint16_t to);
+  void note_coarse(const Cell& cell, Place& place, std::uint16_t to);
   /// Takes the length of a piece into the mean lengths of blocks.
   void learn(const std::vector<Part>& sent, std::uint16_t to, std::size_t bytes);
   Bytes bytes_of(const std::vector<Part>& parts, std::uint16_t to) const;
@@ -224,12 +226,13 @@ class BlockSource final : public transfer::Source {
   /// `since`: since when it waits.
   static Due due(const Place& place, std::optional<Time> since, const Waits& waits, Time now);
   Waits held() const { return {params_.hold, 2 * params_.hold, params_.max_hold}; }
-  /// How a place of Peer::unseen is to go. refine: it went in voxels of 0.4 m.
-  enum class Stage { none, coarse, fine, refine };
-  Stage stage_of(const Place& place, std::uint16_t peer, Time now) const;
+  /// Whether a place of Peer::unseen is to go in voxels of 0.4 m.
+  bool goes_coarse(const Place& place, std::uint16_t peer, Time now) const {
+    return !place.is_fine(peer) && now - place.changed < params_.hold;
+  }
   struct Choice;
   /// Whether a peer is to have voxels of 0.4 m of all that it lacks before any of 0.2 m.
-  bool is_coarse_first(const Peer& peer, std::size_t max_bytes) const;
+  bool is_coarse_first(Peer& peer, std::size_t max_bytes) const;
   /// Places for a piece, all of one group. Defined in block_choice.cpp, as all that it calls.
   std::vector<Part> choose(Peer& peer, std::size_t max_bytes, Time now);
   std::vector<Part> choose_coarse(Peer& peer);
@@ -238,7 +241,8 @@ class BlockSource final : public transfer::Source {
   std::size_t add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Time now,
                         Choice& out) const;
   static void begin_focus(Peer& peer);
-  void add_unseen(Peer& peer, Duration wait, Time now, Choice& out) const;
+  void add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const;
+  void add_resting(const Peer& peer, Time now, Choice& out) const;
   void add_changed(Peer& peer, Time now, Choice& out);
   /// Erases a block; what was seen stays as it is.
   void erase(const Ref& ref);

@@ -423,6 +423,44 @@ TEST_F(GrowingTest, WhatGrowsInSmallVoxelsGoesInSmallOnes) {
   EXPECT_EQ(arrives(3s), (Sent{0, 60}));
 }
 
+TEST_F(GrowingTest, AStationThatHasAnOlderStateInSmallVoxelsGetsNoLargeOnes) {
+  source.join(kTwo);
+  now += 61s;
+  source.tick(now);
+  std::uint64_t first = 0, second = 0;
+  ASSERT_EQ(next({kOne, kTwo}, first).blocks.size(), 60U);
+  source.acknowledged(kTwo, first);
+  for (int x = 0; x < 60; ++x) put(x, 0x00ff);
+  now += 3s;
+  source.tick(now);
+  ASSERT_EQ(next({kTwo}, second).blocks.size(), 60U);
+  source.acknowledged(kTwo, second);
+  source.acknowledged(kOne, first);
+  EXPECT_EQ(arrives(3s), (Sent{0, 60}));
+}
+
+TEST_F(GrowingTest, AMissionsRestingBlocksAreNoReasonToSendFewAtOnce) {
+  BlockSource large({.robot = "r1", .start = 5, .coarse_pieces = 1});
+  large.tick(now);
+  large.join(kOne);
+  for (int x = 0; x < 900; ++x) large.update(0, {{x, 0, 0}, 0x0033, 0});
+  const auto goes = [&](Duration later) {
+    now += later;
+    large.tick(now);
+    const auto content = large.next(std::vector{kOne}, 1200, now);
+    if (!content) return false;
+    large.acknowledged(kOne, content->token);
+    large.settled(content->token);
+    return true;
+  };
+  while (goes(3s)) {
+  }
+  ASSERT_EQ(large.missing(kOne), 900U) << "they rest";
+  large.update(0, {{1000, 0, 0}, 0x0033, 0});
+  EXPECT_FALSE(goes(1s));
+  EXPECT_TRUE(goes(7s));
+}
+
 class CoarseFirstTest : public BlockSourceTest {
  protected:
   static constexpr int kBlocks = 25'000;

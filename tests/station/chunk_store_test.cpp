@@ -57,8 +57,8 @@ TEST_F(ChunkStoreTest, LargeVoxelsAddToEachOther) {
   const auto large = [this](std::uint64_t known, std::uint64_t occupied, std::uint32_t revision) {
     return MapPiece{key, {{{{2, 0, 0}, known, occupied}, revision, true}}};
   };
-  EXPECT_TRUE(chunks.take("r1", large(kLow | kHigh, kHigh, 12)));
-  EXPECT_TRUE(chunks.take("r1", large(kLow, kLow, 15)));
+  EXPECT_TRUE(chunks.take("r1", large(kLow | kHigh, kHigh, 15)));
+  EXPECT_TRUE(chunks.take("r1", large(kLow, kLow, 12)));
   const auto& block = chunks.robots().at("r1").submaps.at(key).blocks.at({2, 0, 0});
   EXPECT_EQ(block.known, kLow | kHigh) << "the later piece was made before, and came later";
   EXPECT_EQ(block.occupied, kLow | kHigh);

@@ -16,9 +16,12 @@ static void change(std::span<const std::uint8_t> bytes) {
     return out;
   };
   std::map<BlockIndex, CoarseBlock> blocks, bases;
+  std::map<BlockIndex, bool> coarse;
   for (; bytes.size() >= 40 && blocks.size() < 64; bytes = bytes.subspan(40)) {
     const BlockIndex index{static_cast<std::int8_t>(bytes[0]), static_cast<std::int8_t>(bytes[1]), bytes[2]};
     blocks[index] = {index, number(8), number(8) & number(16)};
+    coarse[index] = bytes[4] % 4 == 0;
+    if (coarse[index]) blocks[index] = in_large_voxels(blocks[index]);
     if (bytes[3] % 4 != 0) bases[index] = {index, number(24), number(24) & number(32)};
   }
   std::vector<CoarseBlock> sorted;
@@ -28,11 +31,15 @@ static void change(std::span<const std::uint8_t> bytes) {
     return found != bases.end() ? std::optional(found->second) : std::nullopt;
   };
   RangeEncoder encoder;
-  write_blocks(encoder, block_set(sorted), base);
+  BlockSet written = block_set(sorted);
+  for (const auto& [index, is_coarse] : coarse) written.coarse.push_back(is_coarse);
+  write_blocks(encoder, written, base);
   const auto coded = encoder.finish();
   RangeDecoder decoder(coded);
   const auto set = read_blocks(decoder, 2, base);
   if (!set || coarse_blocks(*set) != sorted) std::abort();
+  for (std::size_t i = 0; i < sorted.size(); ++i)
+    if (written.coarse[i] != (!set->coarse.empty() && set->coarse[i])) std::abort();
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
