@@ -19,7 +19,8 @@ if ! clang++ -fsanitize=fuzzer "$probe/a.cpp" -o "$probe/a" 2> /dev/null; then
 fi
 mkdir -p "$build/corpus" "$build/found"
 cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
-  -DADIT_SANITIZE=address,undefined,fuzzer-no-link -DADIT_WERROR=OFF -DADIT_BENCH=OFF -DADIT_FUZZ=ON > "$build/configure.log" 2>&1 ||
+  -DADIT_SANITIZE=address,undefined,fuzzer-no-link -DADIT_WERROR=OFF -DADIT_BENCH=OFF -DADIT_FUZZ=ON \
+  -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON > "$build/configure.log" 2>&1 ||
   { tail -20 "$build/configure.log" >&2; exit 1; }
 nice -n 5 cmake --build "$build" -j "${ADIT_JOBS:-$(nproc)}" --target "${programs[@]}" > "$build/build.log" 2>&1 ||
   { tail -30 "$build/build.log" >&2; exit 1; }
