@@ -49,12 +49,12 @@ void ChunkStore::put(Robot& robot, Submap& submap, const perception::SubmapKey& 
   // What the robot itself sends replaces what was carried, and all that is known comes again.
   const bool adds =
       !added && block.revision == kCoarse && revision == kCoarse && (carried || block.carried == 0);
-  const perception::CoarseBlock now =
+  const perception::CoarseBlock shown =
       adds ? merged({update.block.index, block.known, block.occupied}, update.block) : update.block;
-  block = {now.known, now.occupied, revision, now_, carried ? 1U : 0U};
+  block = {shown.known, shown.occupied, revision, now_, carried ? 1U : 0U};
   robot.carried_blocks += block.carried;
   carried_blocks_ += block.carried;
-  robot.digest.add(key, now);
+  robot.digest.add(key, shown);
   ++revision_;
 }
 

@@ -195,10 +195,7 @@ class AditRule final : public Rule {
   }
 
   const station::ChunkStore::Submap* stored(const AditRobot& r, std::uint32_t submap) const {
-    const auto robot = station_.chunks().robots().find(r.name);
-    if (robot == station_.chunks().robots().end()) return nullptr;
-    const auto found = robot->second.submaps.find({r.name, kStart, submap});
-    return found == robot->second.submaps.end() ? nullptr : &found->second;
+    return station_.chunks().find({r.name, kStart, submap});
   }
 
   /// Merges all that the robot saw, and what the station has, in the lattice of the robot's odometry.

@@ -84,11 +84,9 @@ class Closure {
   }
 
   bool is_equal() const {
-    const auto robot = station_.chunks().robots().find(kRobot);
-    if (robot == station_.chunks().robots().end()) return false;
     for (const auto& [submap, pose] : poses_.poses()) {
-      const auto there = robot->second.submaps.find(pose.key);
-      if (there == robot->second.submaps.end() || there->second.pose_revision != pose.revision) return false;
+      const auto* there = station_.chunks().find(pose.key);
+      if (there == nullptr || there->pose_revision != pose.revision) return false;
     }
     return true;
   }

@@ -47,17 +47,18 @@ BlockSet coarser(const BlockSet& set) {
   return out;
 }
 
+std::uint64_t in_large_voxels(std::uint64_t voxels) {
+  voxels |= voxels >> 1;
+  voxels |= voxels >> 4;
+  voxels |= voxels >> 16;
+  voxels &= 0x0000'0505'0000'0505ULL;  // The first voxel of each eight, if any of them is.
+  voxels |= voxels << 1;
+  voxels |= voxels << 4;
+  return voxels | voxels << 16;
+}
+
 CoarseBlock in_large_voxels(const CoarseBlock& block) {
-  const auto enlarged = [](std::uint64_t voxels) {
-    voxels |= voxels >> 1;
-    voxels |= voxels >> 4;
-    voxels |= voxels >> 16;
-    voxels &= 0x0000'0505'0000'0505ULL;  // The first voxel of each eight, if any of them is.
-    voxels |= voxels << 1;
-    voxels |= voxels << 4;
-    return voxels | voxels << 16;
-  };
-  return {block.index, enlarged(block.known), enlarged(block.occupied)};
+  return {block.index, in_large_voxels(block.known), in_large_voxels(block.occupied)};
 }
 
 std::vector<CoarseBlock> coarse_blocks(const BlockSet& set) {

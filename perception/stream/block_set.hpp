@@ -35,6 +35,8 @@ BlockSet block_set(std::span<const CoarseBlock> blocks);
 BlockSet block_set(std::span<const FineBlock> blocks);
 /// The same blocks one level higher; `set` must not be of level 0.
 BlockSet coarser(const BlockSet& set);
+/// The voxels of 0.2 m of a block that are part of one of 0.4 m of which any part is in these.
+std::uint64_t in_large_voxels(std::uint64_t voxels);
 /// A block whose voxels of 0.2 m all are as their voxel of 0.4 m.
 CoarseBlock in_large_voxels(const CoarseBlock& block);
 /// Blocks of a set of at most level 2 as masks: all parts of a larger voxel are as it is.

@@ -164,28 +164,26 @@ void BlockSource::add_unseen(const Peer& peer, Duration wait, Time now, Choice& 
   }
 }
 
-void BlockSource::add_resting(const Peer& peer, Time now, Choice& out) const {
-  std::size_t looked = 0;
-  for (const auto& [change, cell] : peer.resting) {
-    if (looked++ >= kLookedAt) break;
+std::size_t BlockSource::add_held(const Peer& peer, const std::map<std::uint64_t, Cell>& places,
+                                  std::size_t most, Time now, Choice& out) const {
+  std::size_t looked = 0, added = 0;
+  for (const auto& [change, cell] : places) {
+    if (looked++ >= kLookedAt || added >= most) break;
     const Place& place = cells_.at(cell);
     if (place.is_on_its_way(peer.bit) || out.focused.contains(cell)) continue;
     const Due is_due = due(place, place.waits_since, held(), now);
-    if (is_due != Due::no) out.add(cell, is_due == Due::late);
+    if (is_due != Due::no) out.add(cell, is_due == Due::late), ++added;
   }
+  return added;
+}
+
+void BlockSource::add_resting(const Peer& peer, Time now, Choice& out) const {
+  add_held(peer, peer.resting, kLookedAt, now, out);
 }
 
 void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
   if (peer.changed_rests_until && now < *peer.changed_rests_until) return;
-  std::size_t looked = 0, added = 0;
-  for (const auto& [change, cell] : peer.changed) {
-    if (looked++ >= kLookedAt || added >= kBlocksInPiece) break;
-    const Place& place = cells_.at(cell);
-    if (place.is_on_its_way(peer.bit)) continue;
-    const Due is_due = due(place, place.waits_since, held(), now);
-    if (is_due != Due::no) out.add(cell, is_due == Due::late), ++added;
-  }
-  if (added == 0) peer.changed_rests_until = now + kRest;
+  if (add_held(peer, peer.changed, kBlocksInPiece, now, out) == 0) peer.changed_rests_until = now + kRest;
 }
 
 bool BlockSource::is_coarse_first(Peer& peer, std::size_t max_bytes) const {

@@ -10,6 +10,7 @@ namespace {
 
 using perception::BlockIndex;
 using perception::BlockUpdate;
+using perception::in_large_voxels;
 using transfer::PeerId;
 
 constexpr std::uint64_t kAlone = 1ULL << 63U;  // Groups of submaps without a lattice in common.
@@ -18,14 +19,6 @@ constexpr std::size_t kVotes = 3;             // The newest ones decide, see Blo
 constexpr std::size_t kLookedForCovered = 8;  // Oldest submaps: a few ms.
 constexpr double kLearned = 0.1;              // Weight of the newest piece in the mean size of a block,
 constexpr double kLearnedFrom = 100.0;        // if it has so many.
-
-/// The voxels of 0.4 m of a block of which any part is in these of 0.2 m; each is the first of its eight.
-std::uint64_t halved(std::uint64_t voxels) {
-  voxels |= voxels >> 1;
-  voxels |= voxels >> 4;
-  voxels |= voxels >> 16;
-  return voxels & 0x0000'0505'0000'0505ULL;
-}
 
 }  // namespace
 
@@ -49,7 +42,7 @@ void BlockSource::Place::forget(std::uint16_t peer) {
 }
 
 bool BlockSource::Place::lacks_coarse(std::uint16_t peer) const {
-  return (halved(known) & ~((coarse_by & peer) != 0 ? coarse_known : 0)) != 0;
+  return (in_large_voxels(known) & ~((coarse_by & peer) != 0 ? coarse_known : 0)) != 0;
 }
 
 void BlockSource::open(std::uint32_t submap, const SubmapPlace& place) {
@@ -93,7 +86,7 @@ BlockVotes BlockSource::votes_of(const Cell& cell, const Place& place,
 bool BlockSource::add_missing(Peer& peer, const Cell& cell, const Place& place) {
   peer.forget(place.change);
   const std::uint64_t has = (place.up_to_date & peer.bit) != 0 ? place.sent_known : 0;
-  const bool grows = (halved(place.known) & ~halved(has)) != 0;
+  const bool grows = (in_large_voxels(place.known) & ~in_large_voxels(has)) != 0;
   const bool rests = !place.is_fine(peer.bit) && !place.lacks_coarse(peer.bit);
   (!grows ? peer.changed : rests ? peer.resting : peer.unseen)[place.change] = cell;
   return grows && !rests;
@@ -325,7 +318,7 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
     else
       note_sent(part.cell, place, to);
   }
-  flights_[++tokens_].parts = std::move(chosen);
+  flights_[++tokens_] = std::move(chosen);
   return Content{tokens_, std::move(packed.bytes)};
 }
 
@@ -350,7 +343,7 @@ void BlockSource::learn(const std::vector<Part>& sent, std::uint16_t to, std::si
 }
 
 void BlockSource::note_coarse(const Cell& cell, Place& place, std::uint16_t to) {
-  const std::uint64_t known = halved(place.known);
+  const std::uint64_t known = in_large_voxels(place.known);
   if (known != place.coarse_known) place.coarse_by = place.coarse_missed_by = 0;
   place.coarse_known = known;
   place.coarse_change = place.change;
@@ -383,7 +376,7 @@ void BlockSource::acknowledged(const PeerId& id, std::uint64_t token) {
   const auto flight = flights_.find(token);
   if (peer == peers_.end() || flight == flights_.end()) return;
   const std::uint16_t bit = peer->second.bit;
-  for (const Part& part : flight->second.parts) {
+  for (const Part& part : flight->second) {
     const auto found = cells_.find(part.cell);
     if (found == cells_.end() || part.coarse) continue;
     Place& place = found->second;
@@ -401,7 +394,7 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
   const auto flight = flights_.find(token);
   if (peer == peers_.end() || flight == flights_.end()) return;
   const std::uint16_t bit = peer->second.bit;
-  for (const Part& part : flight->second.parts) {
+  for (const Part& part : flight->second) {
     const auto found = cells_.find(part.cell);
     if (found == cells_.end()) continue;
     Place& place = found->second;

@@ -150,7 +150,8 @@ class BlockSource final : public transfer::Source {
     std::uint16_t base_by{};    ///< Bit of each peer that has exactly that, as far as is known.
     std::uint16_t missed_by{};  ///< Bit of each peer for which changes to that were lost once.
     std::uint16_t seen_by{};    ///< Bit of each peer that acknowledged any state of it.
-    std::uint64_t coarse_known{}, coarse_change{};  ///< As it went in voxels of 0.4 m last, see halved().
+    std::uint64_t coarse_known{},
+        coarse_change{};                ///< As it went in voxels of 0.4 m last, see in_large_voxels().
     std::uint16_t coarse_by{};          ///< Bit of each peer to which that went, unless it was lost.
     std::uint16_t coarse_missed_by{};   ///< Bit of each peer for which that was lost: it is tried once more.
     std::optional<Time> waits_since{};  ///< Since then some peer lacks its present state.
@@ -195,10 +196,6 @@ class BlockSource final : public transfer::Source {
     bool coarse{};           ///< In voxels of 0.4 m.
     std::uint64_t change{};  ///< Of the state that was sent.
   };
-  /// A piece on its way.
-  struct Flight {
-    std::vector<Part> parts{};
-  };
   /// What the blocks of a piece are expected to take.
   struct Bytes {
     static constexpr double kHeader = 32.0;
@@ -215,6 +212,7 @@ class BlockSource final : public transfer::Source {
   static bool add_missing(Peer& peer, const Cell& cell, const Place& place);
   /// Notes that the present state of a place went to these peers.
   void note_sent(const Cell& cell, Place& place, std::uint16_t to);
+  /// The same in voxels of 0.4 m.
   void note_coarse(const Cell& cell, Place& place, std::uint16_t to);
   /// Takes the length of a piece into the mean lengths of blocks.
   void learn(const std::vector<Part>& sent, std::uint16_t to, std::size_t bytes);
@@ -231,7 +229,8 @@ class BlockSource final : public transfer::Source {
     return !place.is_fine(peer) && now - place.changed < params_.hold;
   }
   struct Choice;
-  /// Whether a peer is to have voxels of 0.4 m of all that it lacks before any of 0.2 m.
+  /// Whether a peer is to have voxels of 0.4 m of all that it lacks before any of 0.2 m: notes when that
+  /// begins and ends.
   bool is_coarse_first(Peer& peer, std::size_t max_bytes) const;
   /// Places for a piece, all of one group. Defined in block_choice.cpp, as all that it calls.
   std::vector<Part> choose(Peer& peer, std::size_t max_bytes, Time now);
@@ -242,6 +241,9 @@ class BlockSource final : public transfer::Source {
                         Choice& out) const;
   static void begin_focus(Peer& peer);
   void add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const;
+  /// Adds at most `most` of these places that are due; returns how many.
+  std::size_t add_held(const Peer& peer, const std::map<std::uint64_t, Cell>& places, std::size_t most,
+                       Time now, Choice& out) const;
   void add_resting(const Peer& peer, Time now, Choice& out) const;
   void add_changed(Peer& peer, Time now, Choice& out);
   /// Erases a block; what was seen stays as it is.
@@ -260,7 +262,7 @@ class BlockSource final : public transfer::Source {
   std::map<Cell, Place> cells_{};
   std::map<std::uint32_t, std::size_t> pruned_{};
   std::map<transfer::PeerId, Peer> peers_{};
-  std::map<std::uint64_t, Flight> flights_{};
+  std::map<std::uint64_t, std::vector<Part>> flights_{};  ///< Pieces on their way, by token.
   std::vector<BlockRegion> focus_{};
   Time now_{};
   /// Of a block in a piece, in the mean: as a whole, what changed, and in voxels of 0.4 m.

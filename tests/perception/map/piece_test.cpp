@@ -215,7 +215,7 @@ TEST(Piece, IsRefusedWhenItsContentIsHostile) {
 TEST(Piece, OfAnotherVersionOrOtherTablesIsRefusedByName) {
   const std::vector<std::uint8_t> whole = encode(MapPiece{kKey, corridor(20)});
   const std::vector<std::uint8_t> content(whole.begin() + 6, whole.end());
-  for (const int version : {0, 1, 2, 3, 255})
+  for (const int version : {0, 1, 2, 3, 4, 255})
     EXPECT_EQ(decode(piece_of(static_cast<std::uint8_t>(version), whole[1], content)).reason(),
               Reason::wrong_protocol);
   EXPECT_EQ(decode(piece_of(5, static_cast<std::uint8_t>(whole[1] + 0x10), content)).reason(),
