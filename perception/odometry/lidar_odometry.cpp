@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "perception/odometry/lidar_odometry.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -42,8 +41,9 @@ Eigen::Matrix3d rotation_of(const Pose3& pose) { return pose.orientation.toRotat
 }  // namespace
 
 double OdometryState::sigma() const {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> horizontal(covariance.topLeftCorner<2, 2>());
-  return std::sqrt(std::max(0.0, horizontal.eigenvalues()[1]));
+  // The larger eigenvalue of the horizontal part.
+  const double xx = covariance(0, 0), yy = covariance(1, 1), xy = covariance(1, 0);
+  return std::sqrt(std::max(0.0, (xx + yy) / 2 + std::hypot((xx - yy) / 2, xy)));
 }
 
 LidarOdometryParams LidarOdometryParams::of(const Platform& platform, bool wheels) {

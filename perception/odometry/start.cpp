@@ -47,7 +47,7 @@ std::optional<StartAttitude> StartWatch::judge(std::uint64_t stamp) const {
   if (!quiet && stamp - first_ < kPatience) return std::nullopt;
   StartAttitude found;
   found.at_rest = quiet;
-  found.level_from_base = Eigen::Quaterniond::FromTwoVectors(accel, Eigen::Vector3d::UnitZ());
+  found.level_from_base = rotation_between(accel, Eigen::Vector3d::UnitZ());
   if (quiet) found.gyro_bias = gyro;
   return found;
 }
