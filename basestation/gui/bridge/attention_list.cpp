@@ -12,8 +12,6 @@ QList<QByteArray> roles() {
   return {"need", "urgent", "who", "line", "since", "canSee", "canWait", "grantLabel"};
 }
 
-QString text_of(const std::string& text) { return QString::fromStdString(text); }
-
 }  // namespace
 
 AttentionList::AttentionList(Control& control)

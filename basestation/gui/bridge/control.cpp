@@ -15,17 +15,10 @@ namespace {
 
 using station::Robot;
 
-QString text_of(const std::string& text) { return QString::fromStdString(text); }
-
 QString names_of(const std::vector<std::string>& names) {
   QStringList list;
   for (const std::string& name : names) list << text_of(name);
   return list.join(" ");
-}
-
-QString word_of(Token token) {
-  constexpr std::array kWords{"ok", "warn", "bad", "mine", "other", "none", "goal", "text", "dim"};
-  return QString::fromLatin1(kWords[static_cast<std::size_t>(token)]);
 }
 
 QString word_of(Contact contact) {

@@ -2,9 +2,12 @@
 #pragma once
 #include <QAbstractListModel>
 #include <QVariantList>
+#include <string>
 #include <vector>
 
 namespace adit::gui {
+
+inline QString text_of(const std::string& text) { return QString::fromStdString(text); }
 
 /// A list of rows for QML. Each row has one value per role, in their order; the first role identifies the
 /// row. Rows that stay keep their items, so that a finger on one of them is not lost.

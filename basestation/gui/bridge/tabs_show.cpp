@@ -6,17 +6,6 @@
 #include "basestation/gui/bridge/tabs.hpp"
 
 namespace adit::gui {
-namespace {
-
-QString text_of(const std::string& text) { return QString::fromStdString(text); }
-
-QString word_of(Token token) {
-  constexpr std::array kWords{"ok", "warn", "bad", "mine", "other", "none", "goal", "text", "dim"};
-  return QString::fromLatin1(kWords[static_cast<std::size_t>(token)]);
-}
-
-}  // namespace
-
 void TabState::show_tabs() {
   const auto open_findings =
       std::count_if(found_.findings.begin(), found_.findings.end(),

@@ -11,6 +11,11 @@ using Rgb = std::uint32_t;
 
 /// What a mark or a chip says. A colour is never alone: each token has a shape and a word as well.
 enum class Token : std::uint8_t { ok, warn, bad, mine, other, none, goal, text, dim };
+/// The name of a colour in QML.
+constexpr const char* word_of(Token token) {
+  constexpr std::array kWords{"ok", "warn", "bad", "mine", "other", "none", "goal", "text", "dim"};
+  return kWords[static_cast<std::size_t>(token)];
+}
 
 /// The hues of Okabe and Ito, which differ for dichromats, too. Both themes use these fills: darkened for the
 /// light theme they would no longer differ; there, each mark has a dark outline instead.
