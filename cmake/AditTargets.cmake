@@ -68,12 +68,14 @@ function(adit_test_headers target optimised)
 endfunction()
 
 # adit_test(NAME SOURCES ... LINK dep ... [LABELS label ...] [TIMEOUT seconds] [SERIAL])
-# A GoogleTest program test_NAME; each of its cases is one ctest.
+# A GoogleTest program test_NAME; each of its cases is one ctest. Target adit_tests builds all of them but those that only
+# `./run test long` runs, which target adit_long_tests builds.
 # Labels: unit (default, milliseconds), rehearsal, live (processes over Fast DDS), slow, long (soaks, fuzzing, campaigns
-# and benchmarks: built always, run by `./run test long` alone).
+# and benchmarks: run by `./run test long` alone).
 # SERIAL: its cases never run beside other tests (live timing).
-# Under sanitizers only some are built: address takes those labelled unit; thread takes those in tests/client, tests/core, tests/wire
-# (live ones over Fast DDS too) and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
+# Under sanitizers only what they can tell about is built: address takes those labelled unit of the folders that read
+# foreign bytes, store, or have states; thread takes those in tests/client, tests/core, tests/wire (live ones over Fast DDS
+# too) and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
 function(adit_test name)
   if(NOT ADIT_TESTS)
     return()
@@ -85,7 +87,8 @@ function(adit_test name)
   get_filename_component(part ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   if(ADIT_SANITIZE AND arg_NO_SANITIZE)
     return()
-  elseif(ADIT_SANITIZE MATCHES address AND NOT "unit" IN_LIST arg_LABELS)
+  elseif(ADIT_SANITIZE MATCHES address AND NOT ("unit" IN_LIST arg_LABELS AND part MATCHES
+         "^(agent|bt|client|cloud|command|core|findings|map|perception|record|station|store|transfer|wire)$"))
     return()
   elseif(ADIT_SANITIZE STREQUAL thread AND NOT part MATCHES "^(client|core|wire|live)$")
     return()
@@ -101,19 +104,22 @@ function(adit_test name)
     set(optimised TRUE)
   endif()
   adit_test_headers(test_${name} ${optimised})
-  # What a sanitizer's build needs: the tests and what they start, nothing else.
-  if(NOT TARGET adit_tests)
-    add_custom_target(adit_tests)
+  set(group adit_tests)
+  if("long" IN_LIST arg_LABELS)
+    set(group adit_long_tests)
   endif()
-  add_dependencies(adit_tests test_${name})
+  add_dependencies(${group} test_${name})
   set(serial "")
   if(arg_SERIAL)
     set(serial RUN_SERIAL TRUE)
   endif()
-  # Rehearsals take up to a minute each: ctest starts them first, so that none is left to run alone at the end.
-  set(cost "")
-  if("rehearsal" IN_LIST arg_LABELS)
+  # What takes long is started first, so that nothing is left to run alone at the end. Live tests mostly wait: ./run gives
+  # ctest more slots than there are processors, of which each other test takes three.
+  set(cost PROCESSORS 3)
+  if("live" IN_LIST arg_LABELS)
     set(cost COST 20)
+  elseif("rehearsal" IN_LIST arg_LABELS)
+    list(APPEND cost COST 20)
   endif()
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST
     PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} ${serial} ${cost})
