@@ -67,12 +67,14 @@ function(adit_test_headers target optimised)
   set_target_properties(${target} PROPERTIES PCH_WARN_INVALID OFF)
 endfunction()
 
-# adit_test(NAME SOURCES ... LINK dep ... [LABELS label ...] [TIMEOUT seconds] [SERIAL])
+# adit_test(NAME SOURCES ... LINK dep ... [LABELS label ...] [TIMEOUT seconds] [SERIAL] [FIXTURE name])
 # A GoogleTest program test_NAME; each of its cases is one ctest. Target adit_tests builds all of them but those that only
 # `./run test long` runs, which target adit_long_tests builds.
 # Labels: unit (default, milliseconds), rehearsal, live (processes over Fast DDS), slow, long (soaks, fuzzing, campaigns
 # and benchmarks: run by `./run test long` alone).
-# SERIAL: its cases never run beside other tests (live timing).
+# Each case of a live test has a network and folders of its own (tests/live/isolated.sh), so all run side by side. They
+# run once more with the limits of an idle machine, label long, as NAME.InTime.
+# SERIAL: its cases never run beside other tests. FIXTURE: the ctest fixture that they need.
 # Under sanitizers only what they can tell about is built: address takes those labelled unit of the folders that read
 # foreign bytes, store, or have states; thread takes those in tests/client, tests/core, tests/wire (live ones over Fast DDS
 # too) and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
@@ -80,7 +82,7 @@ function(adit_test name)
   if(NOT ADIT_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "SERIAL;NO_SANITIZE" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "SERIAL;NO_SANITIZE" "TIMEOUT;FIXTURE" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT arg_LABELS)
     set(arg_LABELS unit)
   endif()
@@ -95,8 +97,18 @@ function(adit_test name)
   endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 60)
+    if("live" IN_LIST arg_LABELS)
+      set(arg_TIMEOUT 600)
+    endif()
   endif()
   add_executable(test_${name} ${arg_SOURCES})
+  if("live" IN_LIST arg_LABELS)
+    # What CMake puts before a program that is a test.
+    set_target_properties(test_${name} PROPERTIES CROSSCOMPILING_EMULATOR ${PROJECT_SOURCE_DIR}/tests/live/isolated.sh)
+    add_test(NAME ${name}.InTime COMMAND test_${name})
+    set_tests_properties(${name}.InTime PROPERTIES
+      LABELS long TIMEOUT 3600 RUN_SERIAL TRUE ENVIRONMENT ADIT_PATIENCE=1)
+  endif()
   target_link_libraries(test_${name} PRIVATE ${arg_LINK} adit_folders GTest::gmock GTest::gtest_main)
   # These folders' tests generate and search clouds and maps.
   set(optimised FALSE)
@@ -113,6 +125,10 @@ function(adit_test name)
   if(arg_SERIAL)
     set(serial RUN_SERIAL TRUE)
   endif()
+  set(fixture "")
+  if(arg_FIXTURE)
+    set(fixture FIXTURES_REQUIRED ${arg_FIXTURE})
+  endif()
   # What takes long is started first, so that nothing is left to run alone at the end. Live tests mostly wait: ./run gives
   # ctest more slots than there are processors, of which each other test takes three.
   set(cost PROCESSORS 3)
@@ -122,7 +138,7 @@ function(adit_test name)
     list(APPEND cost COST 20)
   endif()
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST
-    PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} ${serial} ${cost})
+    PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} ${serial} ${cost} ${fixture})
 endfunction()
 
 # adit_bench(NAME SOURCES ... LINK dep ...): a Google Benchmark program bench_NAME.
