@@ -71,4 +71,16 @@ expect spdx 'core/empty.cpp: no line SPDX'
 put core/format.cpp 'int   x ;\n'
 put .clang-format 'BasedOnStyle: Google\n'
 expect format 'core/format.cpp: '
+# A run of ctest in short: what failed, and last the names of those that passed only when they were run again.
+summary() { printf '%s\n' "$@" | awk -f "$(dirname "$lint")/ctest_summary.awk" | tail -n 1; }
+again=(
+  '1/3 Test #1: a.Good ............   Passed    0.01 sec'
+  '2/3 Test #2: a.Late ............***Failed    0.01 sec'
+  '3/3 Test #3: a.Slow ............***Timeout  60.00 sec'
+  '    Test #2: a.Late ............   Passed    0.00 sec'
+  '    Test #3: a.Slow ............   Passed    0.00 sec' '' '100% tests passed, 0 tests failed out of 3')
+last="$(summary "${again[@]}")"
+if [ "$last" != 'passed only at the second try: a.Late, a.Slow' ]; then echo "ctest_summary: $last"; failed=1; fi
+last="$(summary "${again[0]}" '' '100% tests passed, 0 tests failed out of 1')"
+if [ "$last" != '100% tests passed, 0 tests failed out of 1' ]; then echo "ctest_summary: $last"; failed=1; fi
 exit $failed
