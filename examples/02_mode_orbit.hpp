@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Example 2: a mode. This file is the complete mode `orbit`: its module, its row in the mode table and its
-// subtree. docs/adding_a_mode.md explains it line by line; 02_mode_orbit.cpp rehearses it.
+// line in the behaviour tree. docs/adding_a_mode.md explains it; 02_mode_orbit.cpp rehearses it.
 #pragma once
 #include <cmath>
 #include <numbers>
@@ -88,33 +88,13 @@ inline ModeRow OrbitMode::row() {
           .on_failure = OnFailure::pauses,
           .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, centre_free},
           .make = OrbitMode::make,
-          .output_lifetime = 500ms};
+          .output_lifetime = 500ms,
+          .optional = true};
 }
 
-/// Belongs into config/trees/robot.xml, with `<SubTree ID="Orbit"/>` above `<Run name="hold" mode="hold"/>`.
-inline constexpr const char* kOrbitSubtree = R"(
-  <BehaviorTree ID="Orbit">
-    <ReactiveSequence>
-      <Requested mode="orbit"/>
-      <NotStopped/>
-      <ReactiveFallback>
-        <ReactiveSequence>
-          <DriverAlive/>
-          <Localised/>
-          <TerrainFresh/>
-          <Run mode="orbit"/>
-        </ReactiveSequence>
-        <Pause mode="orbit"/>
-      </ReactiveFallback>
-    </ReactiveSequence>
-  </BehaviorTree>
-)";
-
-/// The shipped tree with the subtree of `orbit`.
+/// The shipped tree (config/trees/robot.xml) with `orbit`: one line above `<Run name="hold" mode="hold"/>`.
 inline std::string with_orbit(std::string tree) {
-  tree.insert(tree.find("<Run name=\"hold\""), "<SubTree ID=\"Orbit\"/>\n      ");
-  tree.insert(tree.find("  <TreeNodesModel>"), kOrbitSubtree);
-  return tree;
+  return tree.insert(tree.find("<Run name=\"hold\""), "<Mode mode=\"orbit\"/>\n      ");
 }
 
 /// The shipped modes and `orbit`.

@@ -12,39 +12,47 @@ bt::NodeStatus status(bool holds) { return holds ? bt::NodeStatus::success : bt:
 
 Result<bt::Registry> Decider::registry() {
   bt::Registry leaves;
-  const bt::Ports mode{bt::required_input("mode", bt::PortType::text)};
   for (const Condition& condition : table_.conditions()) {
     const auto added = leaves.add_condition(std::string(condition.leaf), [this, condition](bt::Leaf&) {
       const bool holds = condition.holds(facts_);
-      if (!holds && decision_.reason == Reason::none) decision_.reason = condition.failure(facts_);
+      if (!holds) note_failure(condition);
       return status(holds);
     });
     if (!added) return added.error();
   }
-  const auto requested = leaves.add_condition(
-      "Requested",
-      [this](bt::Leaf& leaf) {
-        const auto asked = leaf.input<std::string>("mode");
-        return status(asked && *asked == requested_);
-      },
-      mode);
-  if (!requested) return requested.error();
-  const auto run = leaves.add_action(
-      "Run", [this](bt::Leaf& leaf) { return choose(leaf, true); }, mode);
-  if (!run) return run.error();
-  const auto pause = leaves.add_action(
-      "Pause", [this](bt::Leaf& leaf) { return choose(leaf, false); }, mode);
-  if (!pause) return pause.error();
+  // A leaf that is a function of the mode in its port; it fails if the table has none of that name.
+  const auto of_mode = [this](bool (Decider::*leaf)(const ModeRow&)) {
+    return [this, leaf](bt::Leaf& node) {
+      const auto mode = node.input<std::string>("mode");
+      const ModeRow* row = mode ? table_.find(*mode) : nullptr;
+      return status(row && (this->*leaf)(*row));
+    };
+  };
+  const bt::Ports ports{bt::required_input("mode", bt::PortType::text)};
+  auto added = leaves.add_condition("Requested", of_mode(&Decider::is_requested), ports);
+  if (added) added = leaves.add_action("Run", of_mode(&Decider::run), ports);
+  if (added) added = leaves.add_action("Pause", of_mode(&Decider::pause), ports);
+  if (added) added = leaves.add_action("Mode", of_mode(&Decider::run_or_pause), ports);
+  if (!added) return added.error();
   return leaves;
 }
 
-bt::NodeStatus Decider::choose(bt::Leaf& leaf, bool runs) {
-  const auto mode = leaf.input<std::string>("mode");
-  const ModeRow* row = mode ? table_.find(*mode) : nullptr;
-  if (!row) return bt::NodeStatus::failure;
-  decision_.mode = row;
+bool Decider::run_or_pause(const ModeRow& row) {
+  if (!is_requested(row)) return false;
+  const Condition* ends = row.ended_by(facts_);
+  const Condition* failed = ends ? ends : row.paused_by(facts_);
+  if (failed) note_failure(*failed);
+  return !ends && choose(row, !failed);
+}
+
+bool Decider::choose(const ModeRow& row, bool runs) {
+  decision_.mode = &row;
   decision_.runs = runs;
-  return bt::NodeStatus::success;
+  return true;
+}
+
+void Decider::note_failure(const Condition& failed) {
+  if (decision_.reason == Reason::none) decision_.reason = failed.failure(facts_);
 }
 
 Result<std::unique_ptr<Decider>> Decider::make(
@@ -57,7 +65,8 @@ Result<std::unique_ptr<Decider>> Decider::make(
   decider->tree_ = std::move(*tree);
   decider->tree_.for_each([&](const bt::TreeNode& node, std::size_t) {
     const auto mode = node.config().ports.find("mode");
-    if (node.id() == "Run" && mode != node.config().ports.end()) decider->modes_.insert(mode->second);
+    if ((node.id() == "Mode" || node.id() == "Run") && mode != node.config().ports.end())
+      decider->modes_.insert(mode->second);
   });
   decider->tree_.on_error([d = decider.get()](const bt::TreeNode& node, std::string_view what) {
     d->error_ = node.name() + ": " + std::string(what);

@@ -10,8 +10,9 @@
 
 namespace adit::agent {
 
-/// Runs the robot's behaviour tree (config/trees/robot.xml). Leaves: the conditions of the mode table by
-/// name, `Requested mode=""`, and the two kinds of decision, `Run mode=""` and `Pause mode=""`.
+/// Runs the robot's behaviour tree (config/trees/robot.xml). Its leaf `Mode mode=""` evaluates a row of the
+/// mode table and decides for that mode. Leaves for trees that do this themselves: the conditions of the
+/// table by name, `Requested mode=""`, and the two kinds of decision, `Run mode=""` and `Pause mode=""`.
 ///
 /// Its decisions are requests: MotionGuard enforces the mode table in front of the mux.
 class Decider {
@@ -32,7 +33,7 @@ class Decider {
 
   /// Ticks the tree once. A tree that decides nothing, or fails, chooses `hold`.
   Decision decide(std::string_view requested, const Facts& facts, Time now);
-  /// Whether the tree has a Run for that mode.
+  /// Whether the tree has a Mode or Run for that mode.
   bool installed(const ModeRow& row) const { return modes_.contains(row.name); }
   const ModeTable& table() const { return table_; }
   /// Why the tree was refused; empty: it runs.
@@ -46,7 +47,13 @@ class Decider {
   static Result<std::unique_ptr<Decider>> make(
       const ModeTable& table, const std::function<Result<bt::Tree>(const bt::Registry&)>& load);
   static Result<std::unique_ptr<Decider>> checked(Result<std::unique_ptr<Decider>> decider);
-  bt::NodeStatus choose(bt::Leaf& leaf, bool runs);
+  // Leaves with a mode; true: success.
+  bool is_requested(const ModeRow& row) { return row.name == requested_; }
+  bool run(const ModeRow& row) { return choose(row, true); }
+  bool pause(const ModeRow& row) { return choose(row, false); }
+  bool run_or_pause(const ModeRow& row);
+  bool choose(const ModeRow& row, bool runs);
+  void note_failure(const Condition& failed);
 
   const ModeTable& table_;
   bt::Tree tree_{};

@@ -96,6 +96,13 @@ std::vector<ModeRow> standard_modes() {
   };
 }
 
+/// The first condition of the row that fails, among those whose scope counts; null: all hold.
+const Condition* first_failure(const ModeRow& row, const Facts& facts, auto counts) {
+  for (const Condition& condition : row.conditions)
+    if (counts(condition.scope) && !condition.holds(facts)) return &condition;
+  return nullptr;
+}
+
 }  // namespace
 
 ModeTable::ModeTable(std::vector<ModeRow> rows) : rows_(std::move(rows)) {
@@ -125,9 +132,18 @@ const ModeRow* ModeTable::find_by_input(Accepts input) const {
 }
 
 Reason entry_refusal(const ModeRow& row, const Facts& facts) {
-  for (const Condition& condition : row.conditions)
-    if (!condition.holds(facts)) return condition.failure(facts);
-  return Reason::none;
+  const Condition* failed = first_failure(row, facts, [](Scope) { return true; });
+  return failed ? failed->failure(facts) : Reason::none;
+}
+
+const Condition* ModeRow::ended_by(const Facts& facts) const {
+  return first_failure(*this, facts, [this](Scope scope) {
+    return scope == Scope::terminal || (scope == Scope::continuous && on_failure == OnFailure::falls_to_hold);
+  });
+}
+
+const Condition* ModeRow::paused_by(const Facts& facts) const {
+  return first_failure(*this, facts, [](Scope scope) { return scope == Scope::continuous; });
 }
 
 }  // namespace adit::agent

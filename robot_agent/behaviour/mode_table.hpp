@@ -82,12 +82,16 @@ struct ModeRow {
   /// Makes the mode's module; null: nothing moves the robot in this mode.
   std::unique_ptr<ModeModule> (*make)(const ModeContext&){};
   Duration output_lifetime{};  ///< Period for which the module's last output is valid (rule 6).
-  bool optional{};             ///< The tree may have no `Run` for this mode; the mode is then not installed.
+  bool optional{};             ///< A tree may omit the mode; it is then not installed.
 
   bool manual() const { return accepts == Accepts::stick; }
   bool moves() const { return make != nullptr; }
   /// Whether the mode continues without an operator.
   bool autonomous() const { return moves() && !manual(); }
+  /// The first condition that fails and whose failure ends the mode while it lasts; null: it continues.
+  const Condition* ended_by(const Facts& facts) const;
+  /// The first continuous condition that fails: a mode that did not end pauses; null: none fails.
+  const Condition* paused_by(const Facts& facts) const;
 };
 
 /// The modes of a robot: `hold`, the fallback of all modes, and others. Guard, behaviour tree, command

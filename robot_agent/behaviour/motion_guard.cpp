@@ -26,14 +26,11 @@ bool MotionGuard::holder_changed() {
 
 Decision MotionGuard::judge(const Decision& wanted, const Facts& facts) {
   if (admitted_ == hold_) return {hold_, wanted.mode == hold_ && wanted.runs, wanted.reason};
-  const bool pauses = admitted_->on_failure == OnFailure::pauses;
-  for (const Condition& c : admitted_->conditions)
-    if ((c.scope == Scope::terminal || (c.scope == Scope::continuous && !pauses)) && !c.holds(facts))
-      return fall(c.failure(facts));
-  if (wanted.mode != admitted_ || (!wanted.runs && !pauses))
+  if (const Condition* failed = admitted_->ended_by(facts)) return fall(failed->failure(facts));
+  if (wanted.mode != admitted_ || (!wanted.runs && admitted_->on_failure != OnFailure::pauses))
     return fall(wanted.mode == hold_ && wanted.reason != Reason::none ? wanted.reason : Reason::tree_refused);
-  for (const Condition& c : admitted_->conditions)
-    if (c.scope == Scope::continuous && !c.holds(facts)) return {admitted_, false, c.failure(facts)};
+  if (const Condition* failed = admitted_->paused_by(facts))
+    return {admitted_, false, failed->failure(facts)};
   return {admitted_, wanted.runs, wanted.reason};
 }
 

@@ -25,6 +25,12 @@ bool is_condition(const TreeNode& node, const ModeTable& table) {
   return std::any_of(all.begin(), all.end(), [&](const Condition& c) { return is_leaf(node, c.leaf); });
 }
 
+/// Whether the node is a leaf with a mode of the table.
+bool has_mode(const TreeNode& node) {
+  return is_leaf(node, "Mode") || is_leaf(node, "Run") || is_leaf(node, "Pause") ||
+         is_leaf(node, "Requested");
+}
+
 std::string mode_of(const TreeNode& node) {
   const auto mode = node.config().ports.find("mode");
   return mode == node.config().ports.end() ? std::string{} : mode->second;
@@ -91,10 +97,7 @@ class Checker {
   void visit(const TreeNode& node, Names asked) {
     if (!error_.empty()) return;
     path_.push_back(&node);
-    if (is_leaf(node, "Run") || is_leaf(node, "Pause"))
-      see_decision(node, asked);
-    else if (is_leaf(node, "Requested"))
-      (void)row_of(node);
+    if (has_mode(node)) check_leaf(node, asked);
     for (const auto& child : node.children()) {
       visit(*child, asked);
       if (node.id() == "ReactiveSequence") asked.merge(guaranteed(*child, table_));
@@ -102,24 +105,19 @@ class Checker {
     path_.pop_back();
   }
 
-  void see_decision(const TreeNode& leaf, const Names& asked) {
-    const ModeRow* row = row_of(leaf);
-    if (!row) return;
-    const bool runs = leaf.id() == "Run";
-    if (runs) runs_.insert(row->name);
-    if (row == &table_.hold()) return;
+  void check_leaf(const TreeNode& leaf, const Names& asked) {
+    const std::string mode = mode_of(leaf);
+    const ModeRow* row = table_.find(mode);
+    if (!row) return refuse(leaf, leaf.id() + ": the mode table has no mode '" + mode + "'");
+    const bool is_hold = row == &table_.hold(), runs = leaf.id() == "Run", evaluates = leaf.id() == "Mode";
+    // As the fallback of all modes, hold runs whether it was requested or not.
+    if (runs || (evaluates && !is_hold)) runs_.insert(row->name);
+    if (is_hold || evaluates || leaf.id() == "Requested") return;
     if (!runs && row->on_failure != OnFailure::pauses)
       return refuse(leaf, std::string(row->name) + " cannot pause: it falls to hold");
     require(leaf, requested(row->name), asked);
     for (const Condition& c : row->conditions)
       if (runs ? !c.entry_only() : c.scope == Scope::terminal) require(leaf, std::string(c.leaf), asked);
-  }
-
-  const ModeRow* row_of(const TreeNode& leaf) {
-    const std::string mode = mode_of(leaf);
-    const ModeRow* row = table_.find(mode);
-    if (!row) refuse(leaf, leaf.id() + ": the mode table has no mode '" + mode + "'");
-    return row;
   }
 
   void require(const TreeNode& leaf, const std::string& condition, const Names& asked) {
@@ -181,8 +179,7 @@ Result<void> check_tree(const std::string& file, const ModeTable& table) {
 bool is_robot_tree(const bt::Tree& tree, const ModeTable& table) {
   bool found = false;
   tree.for_each([&](const TreeNode& node, std::size_t) {
-    found = found || is_leaf(node, "Run") || is_leaf(node, "Pause") || is_leaf(node, "Requested") ||
-            is_condition(node, table);
+    found = found || has_mode(node) || is_condition(node, table);
   });
   return found;
 }

@@ -2,15 +2,13 @@
 // Defects of a part of the agent that a double replaces, and of what its sensors see.
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "nav/planners/planner.hpp"
-#include "robot_agent/behaviour/decider.hpp"
 #include "robot_agent/behaviour/mode_module.hpp"
+#include "robot_agent/behaviour/mode_table.hpp"
 #include "sensor_msgs/msg/PointCloud2.h"
 #include "sim/defects/decorations.hpp"
 
@@ -155,18 +153,7 @@ Decoration yields_unasked(const Subject&) {
 
 Decoration drives_through_stop(const Subject&) {
   Decoration decoration;
-  decoration.parameters = [](agent::AgentParams& params) {
-    params.modes = modes_without_stop();
-    params.load_tree =
-        [modes = params.modes](const std::string& file) -> Result<std::unique_ptr<agent::Decider>> {
-      std::ifstream in(file);
-      std::string tree(std::istreambuf_iterator<char>(in), {});
-      const std::string leaf = "<" + std::string(agent::conditions::kNotStopped.leaf) + "/>";
-      for (auto at = tree.find(leaf); at != std::string::npos; at = tree.find(leaf))
-        tree.erase(at, leaf.size());
-      return agent::Decider::load_text(tree, *modes);
-    };
-  };
+  decoration.parameters = [](agent::AgentParams& params) { params.modes = modes_without_stop(); };
   return decoration;
 }
 

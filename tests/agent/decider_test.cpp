@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <random>
+
 #include "tests/folders/folders.hpp"
 
 namespace adit::agent {
@@ -67,6 +69,42 @@ TEST(Decider, FollowsTheTableWhenAConditionFails) {
       EXPECT_EQ(d.mode->name, pauses ? row.name : "hold") << condition.leaf;
       EXPECT_TRUE(!d.runs || d.mode->name == "hold");
     }
+}
+
+// The leaf Mode decides for a mode as the tree that lists the mode's conditions, whatever holds.
+TEST(Decider, ModeDecidesAsTheConditionsOneByOne) {
+  const auto by_mode = load();
+  const auto by_conditions =
+      Decider::load_unchecked(source_folder() + "/tests/agent/robot_by_conditions.xml").value();
+  std::mt19937_64 random(1);
+  std::size_t compared = 0, runs = 0, pauses = 0;
+  for (Time now{}; now < Time{Duration{250s}};) {
+    Facts f;
+    const auto holds = [&] { return random() % 8 != 0; };
+    f.stopped = !holds();
+    for (bool Facts::*fact :
+         {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh, &Facts::stick_fresh,
+          &Facts::stick_kept, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free,
+          &Facts::program_fresh, &Facts::map_fresh})
+      f.*fact = holds();
+    for (const std::string_view fact : kAllGood.also)
+      if (holds()) f.also.push_back(fact);
+    if (!holds()) f.unlocalised = Reason::localisation_lost;
+    now += 50ms;
+    for (const ModeRow& row : ModeTable::shipped().rows()) {
+      if (!by_conditions->installed(row)) continue;
+      const Decision a = by_mode->decide(row.name, f, now), b = by_conditions->decide(row.name, f, now);
+      EXPECT_EQ(a.mode, b.mode) << row.name;
+      EXPECT_EQ(a.runs, b.runs) << row.name;
+      EXPECT_EQ(name(a.reason), name(b.reason)) << row.name;
+      ++compared;
+      runs += b.runs && b.mode == &row;
+      pauses += !b.runs;
+    }
+  }
+  EXPECT_EQ(compared, 40'000U);
+  EXPECT_GT(runs, 10'000U);
+  EXPECT_GT(pauses, 3'000U);
 }
 
 TEST(Decider, UnknownRequestHolds) {

@@ -71,8 +71,8 @@ TEST(ExternalTree, MayDoWithoutTheModeAndThenSaysSo) {
   std::stringstream text;
   text << file.rdbuf();
   std::string xml = text.str();
-  const std::string subtree = "<SubTree ID=\"External\" name=\"external\"/>";
-  const auto decider = Decider::load_text(xml.erase(xml.find(subtree), subtree.size()));
+  const std::string leaf = "<Mode mode=\"external\"/>";
+  const auto decider = Decider::load_text(xml.erase(xml.find(leaf), leaf.size()));
   ASSERT_TRUE(decider) << decider.error().text;
   EXPECT_FALSE((*decider)->installed(*ModeTable::shipped().find("external")));
   EXPECT_TRUE((*decider)->installed(*ModeTable::shipped().find("waypoint")));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mode that costs one module, one subtree and one row: `orbit`, the example of docs/adding_a_mode.md.
+// A mode that costs one module, one row and one line of the tree: `orbit`, the example of
+// docs/adding_a_mode.md.
 #include "examples/02_mode_orbit.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +19,7 @@ namespace {
 using namespace radio;  // the command kinds
 using testing::Contains;
 
-/// The shipped tree and one subtree.
+/// The shipped tree and one line.
 std::string write_tree() {
   std::ifstream shipped(source_folder() + "/config/trees/robot.xml");
   std::stringstream text;
@@ -105,7 +106,10 @@ TEST_F(Orbit, ATreeThatSkipsItsConditionsIsRefused) {
   std::stringstream text;
   text << file.rdbuf();
   std::string xml = text.str();
-  xml.erase(xml.rfind("<TerrainFresh/>", xml.find("<Run mode=\"orbit\"/>")), 15);
+  const std::string leaf = "<Mode mode=\"orbit\"/>";
+  xml.replace(xml.find(leaf), leaf.size(),
+              "<ReactiveSequence><Requested mode=\"orbit\"/><NotStopped/><DriverAlive/><Localised/>"
+              "<Run mode=\"orbit\"/></ReactiveSequence>");
   const auto modes = modes_with_orbit();
   const auto decider = Decider::load_text(xml, *modes);
   ASSERT_FALSE(decider);

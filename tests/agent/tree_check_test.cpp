@@ -16,14 +16,16 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The shipped tree, one place changed.
-std::string changed(const std::string& from, const std::string& to, std::size_t occurrence = 0) {
-  std::ifstream file(source_folder() + "/config/trees/robot.xml");
+const std::string kShipped = source_folder() + "/config/trees/robot.xml";
+const std::string kByConditions = source_folder() + "/tests/agent/robot_by_conditions.xml";
+
+/// A tree, one place changed.
+std::string changed(const std::string& from, const std::string& to, const std::string& tree = kByConditions) {
+  std::ifstream file(tree);
   std::stringstream text;
   text << file.rdbuf();
   std::string xml = text.str();
-  std::size_t at = xml.find(from);
-  for (; occurrence > 0 && at != std::string::npos; --occurrence) at = xml.find(from, at + 1);
+  const std::size_t at = xml.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return xml.replace(at, from.size(), to);
 }
@@ -44,8 +46,32 @@ std::string complaint(const std::string& xml) {
 }
 
 TEST(TreeCheck, TheShippedTreeAgrees) {
-  const auto checked = check_tree(source_folder() + "/config/trees/robot.xml");
-  EXPECT_TRUE(checked) << checked.error().text;
+  for (const std::string& tree : {kShipped, kByConditions}) {
+    const auto checked = check_tree(tree);
+    EXPECT_TRUE(checked) << checked.error().text;
+  }
+}
+
+TEST(TreeCheck, ModeEvaluatesItsConditionsItselfAndMayBeAnywhere) {
+  const std::string leaf = "<Mode mode=\"waypoint\"/>";
+  for (const std::string& form :
+       {"<Inverter><Inverter>" + leaf + "</Inverter></Inverter>", "<Sequence>" + leaf + "</Sequence>",
+        "<ReactiveSequence><MapFresh/>" + leaf + "</ReactiveSequence>"}) {
+    const auto decider = Decider::load_text(changed(leaf, form, kShipped));
+    ASSERT_TRUE(decider) << form << ": " << decider.error().text;
+    EXPECT_TRUE((*decider)->installed(*ModeTable::shipped().find("waypoint")));
+  }
+}
+
+TEST(TreeCheck, ModeIsNoConditionOfARun) {
+  const std::string leaf = "<Mode mode=\"waypoint\"/>", run = "<Run mode=\"waypoint\"/>";
+  EXPECT_THAT(complaint(changed(leaf, "<ReactiveSequence>" + leaf + run + "</ReactiveSequence>", kShipped)),
+              HasSubstr("Run mode=\"waypoint\" lacks the condition Requested mode=\"waypoint\" before it"));
+}
+
+TEST(TreeCheck, HoldNeedsARunBecauseNobodyRequestsAFallback) {
+  EXPECT_THAT(complaint(changed("<Run name=\"hold\" mode=\"hold\"/>", "<Mode mode=\"hold\"/>", kShipped)),
+              HasSubstr("the tree has no Run for mode hold"));
 }
 
 TEST(TreeCheck, MissingConditionIsNamedWithTheLineOfItsRun) {
@@ -103,6 +129,8 @@ TEST(TreeCheck, UnknownModesAreNamed) {
               HasSubstr("Requested: the mode table has no mode 'fly'"));
   EXPECT_THAT(complaint(changed("<Pause mode=\"waypoint\"/>", "<Pause mode=\"{mode}\"/>")),
               HasSubstr("Pause: the mode table has no mode '{mode}'"));
+  EXPECT_THAT(complaint(changed("<Mode mode=\"manual\"/>", "<Mode mode=\"{mode}\"/>", kShipped)),
+              HasSubstr("Mode: the mode table has no mode '{mode}'"));
 }
 
 TEST(TreeCheck, ModesThatFallToHoldCannotPause) {
@@ -114,6 +142,8 @@ TEST(TreeCheck, ModesThatFallToHoldCannotPause) {
 
 TEST(TreeCheck, EveryModeThatIsNotOptionalNeedsARun) {
   EXPECT_THAT(complaint(changed("<SubTree ID=\"Manual\" name=\"manual\"/>", "")),
+              HasSubstr("the tree has no Run for mode manual"));
+  EXPECT_THAT(complaint(changed("<Mode mode=\"manual\"/>", "", kShipped)),
               HasSubstr("the tree has no Run for mode manual"));
   EXPECT_TRUE(Decider::load_text(changed("<SubTree ID=\"External\" name=\"external\"/>", "")));
 }

@@ -135,7 +135,10 @@ TEST_F(Tool, CheckAsksARobotsTreeAgainstTheModeTable) {
                 "it\n");
   write("fly.xml", "<root><BehaviorTree ID=\"M\">\n<Run mode=\"fly\"/></BehaviorTree></root>");
   EXPECT_EQ(tree("check fly.xml").out, "tree: fly.xml:2: Run: the mode table has no mode 'fly'\n");
-  EXPECT_EQ(tree("check " + adit::source_folder() + "/config/trees/robot.xml").status, 0);
+  for (const char* valid : {"/config/trees/robot.xml", "/tests/agent/robot_by_conditions.xml"})
+    EXPECT_EQ(tree("check " + adit::source_folder() + valid).status, 0) << valid;
+  write("hover.xml", "<root><BehaviorTree ID=\"M\">\n<Mode mode=\"hover\"/></BehaviorTree></root>");
+  EXPECT_EQ(tree("check hover.xml").out, "tree: hover.xml:2: Mode: the mode table has no mode 'hover'\n");
   // A robot's tree with a leaf that the robot does not know.
   write("dance.xml",
         "<root><BehaviorTree ID=\"M\"><Sequence>\n<NotStopped/>\n<Dance/></Sequence></BehaviorTree></root>");

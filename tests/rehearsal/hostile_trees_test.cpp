@@ -80,5 +80,25 @@ TEST_P(HostileTreeRun, BreaksNoRule) {
   }
 }
 
+// A user's tree that lists the conditions of the modes runs as the shipped one, byte for byte.
+TEST(TreeByConditions, GivesTheDigestOfTheShippedTree) {
+  const auto scenario = parse_scenario(kChaos, "chaos.yaml");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().text;
+  const auto world = *make_world(scenario->world);
+  const auto run_with = [&](const std::string& tree) {
+    RunParams params;
+    params.workers = 1;
+    params.make_agent =
+        *make_agent_factory({}, [&](agent::AgentParams& agent) { agent.tree = source_folder() + tree; });
+    const auto outcome = rehearse(*scenario, world, params);
+    EXPECT_TRUE(outcome.ok()) << outcome.error().text;
+    return outcome->report;
+  };
+  const RunReport shipped = run_with("/config/trees/robot.xml");
+  EXPECT_GT(shipped.robots.at("r1").distance, 1.0);
+  EXPECT_EQ(run_with("/tests/agent/robot_by_conditions.xml").digest, shipped.digest);
+  EXPECT_NE(run_with("/tests/rehearsal/hostile_trees/without_not_stopped.xml").digest, shipped.digest);
+}
+
 }  // namespace
 }  // namespace adit::sim

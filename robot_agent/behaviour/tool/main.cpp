@@ -27,7 +27,7 @@ leaves.yaml scripts the results of leaves, by name or ID; one entry is used per 
   Drive:   [RUNNING, RUNNING, SUCCESS]
 Leaves that are neither built in nor scripted succeed.
 
-A tree with leaves of a robot's (Run, Pause, Requested, a condition of a mode) is checked against the mode table as well, as the
+A tree with leaves of a robot's (Mode, Run, Pause, Requested, a condition of a mode) is checked against the mode table as well, as the
 robot does when it loads the tree.
 
 Exit status: 0 done, 1 the tree or the leaves are wrong (file:line on stderr), 2 wrong usage.)";
