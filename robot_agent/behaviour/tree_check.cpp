@@ -14,7 +14,6 @@ namespace {
 using bt::Hook;
 using bt::NodeKind;
 using bt::TreeNode;
-using Names = std::set<std::string, std::less<>>;
 
 bool is_leaf(const TreeNode& node, std::string_view id) {
   return node.kind() != NodeKind::subtree && node.children().empty() && node.id() == id;
@@ -56,23 +55,15 @@ bool is_reactive(const TreeNode& node) {
          node.id() == "ReactiveFallback";
 }
 
-/// Returns the conditions that were evaluated in this tick, and held, if the node succeeds. A node with such
-/// a condition is never skipped.
-Names guaranteed(const TreeNode& node, const ModeTable& table) {
-  if (may_be_passed_over(node)) return {};
-  if (const auto name = asked_by(node, table)) return {*name};
-  if (node.kind() == NodeKind::subtree) return guaranteed(*node.children().front(), table);
-  Names all;
-  if (node.id() == "ReactiveSequence") {
-    for (const auto& child : node.children()) all.merge(guaranteed(*child, table));
-  } else if (node.id() == "ReactiveFallback") {
-    all = guaranteed(*node.children().front(), table);
-    for (const auto& child : node.children()) {
-      const Names other = guaranteed(*child, table);
-      std::erase_if(all, [&](const std::string& name) { return !other.contains(name); });
-    }
-  }
-  return all;
+/// Whether the condition was evaluated in this tick, and held, if the node succeeds. A node with such a
+/// condition is never skipped.
+bool guarantees(const TreeNode& node, const std::string& condition, const ModeTable& table) {
+  if (may_be_passed_over(node)) return false;
+  if (asked_by(node, table) == condition) return true;
+  if (!is_reactive(node)) return false;
+  const auto holds = [&](const auto& child) { return guarantees(*child, condition, table); };
+  return node.id() == "ReactiveFallback" ? std::ranges::all_of(node.children(), holds)
+                                         : std::ranges::any_of(node.children(), holds);
 }
 
 std::string place(const TreeNode& node) {
@@ -84,7 +75,7 @@ class Checker {
   explicit Checker(const ModeTable& table) : table_(table) {}
 
   Result<void> run(const bt::Tree& tree) {
-    visit(tree.root(), {});
+    visit(tree.root());
     if (error_.empty())
       for (const ModeRow& row : table_.rows())
         if (!row.optional && !runs_.contains(row.name))
@@ -94,18 +85,15 @@ class Checker {
   }
 
  private:
-  void visit(const TreeNode& node, Names asked) {
+  void visit(const TreeNode& node) {
     if (!error_.empty()) return;
     path_.push_back(&node);
-    if (has_mode(node)) check_leaf(node, asked);
-    for (const auto& child : node.children()) {
-      visit(*child, asked);
-      if (node.id() == "ReactiveSequence") asked.merge(guaranteed(*child, table_));
-    }
+    if (has_mode(node)) check_leaf(node);
+    for (const auto& child : node.children()) visit(*child);
     path_.pop_back();
   }
 
-  void check_leaf(const TreeNode& leaf, const Names& asked) {
+  void check_leaf(const TreeNode& leaf) {
     const std::string mode = mode_of(leaf);
     const ModeRow* row = table_.find(mode);
     if (!row) return refuse(leaf, leaf.id() + ": the mode table has no mode '" + mode + "'");
@@ -115,26 +103,23 @@ class Checker {
     if (is_hold || evaluates || leaf.id() == "Requested") return;
     if (!runs && row->on_failure != OnFailure::pauses)
       return refuse(leaf, std::string(row->name) + " cannot pause: it falls to hold");
-    require(leaf, requested(row->name), asked);
+    require(leaf, requested(row->name));
     for (const Condition& c : row->conditions)
-      if (runs ? !c.entry_only() : c.scope == Scope::terminal) require(leaf, std::string(c.leaf), asked);
+      if (runs ? !c.entry_only() : c.scope == Scope::terminal) require(leaf, std::string(c.leaf));
   }
 
-  void require(const TreeNode& leaf, const std::string& condition, const Names& asked) {
-    if (asked.contains(condition)) return;
-    const std::string what = leaf.id() + " mode=\"" + mode_of(leaf) + "\"";
-    refuse(leaf, what + " lacks the condition " + condition + hint(condition));
-  }
-
-  /// Why a condition that precedes the leaf does not count; empty when there is none.
-  std::string hint(const std::string& condition) const {
+  /// Refuses the leaf that is visited unless the condition precedes it in every tick.
+  void require(const TreeNode& leaf, const std::string& condition) {
+    std::string why;  // Why a condition that precedes the leaf does not count, the nearest first.
     for (std::size_t i = path_.size() - 1; i-- > 0;)
       for (const auto& child : path_[i]->children()) {
         if (child.get() == path_[i + 1]) break;
+        if (path_[i]->id() == "ReactiveSequence" && guarantees(*child, condition, table_)) return;
         std::vector<const TreeNode*> way{path_[i]};
-        if (find(*child, condition, way)) return ": " + blame(way);
+        if (why.empty() && find(*child, condition, way)) why = ": " + blame(way);
       }
-    return " before it";
+    refuse(leaf, leaf.id() + " mode=\"" + mode_of(leaf) + "\" lacks the condition " + condition +
+                     (why.empty() ? " before it" : why));
   }
 
   bool find(const TreeNode& node, const std::string& condition, std::vector<const TreeNode*>& way) const {
