@@ -58,9 +58,8 @@ Result<void> Behaviour::refuse(Reason reason, std::string_view mode) const {
 Reason Behaviour::not_run(const ModeRow& row) const {
   if (&row == &table().hold()) return Reason::none;
   if (!decider_->refusal().empty()) return Reason::tree_refused;
-  const ModeModule* driver = module(row);
-  return decider_->installed(row) && (!driver || driver->installed()) ? Reason::none
-                                                                      : Reason::mode_not_installed;
+  const bool is_installed = decider_->installed(row) && (module(row) || !row.moves());
+  return is_installed ? Reason::none : Reason::mode_not_installed;
 }
 
 Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
@@ -221,7 +220,7 @@ bool Behaviour::drives() const {
 Progress Behaviour::clearing() const {
   const ModeRow* row = table().find(kGetOut);
   const ModeModule* driver = row ? module(*row) : nullptr;
-  return driver && decision_.mode == row ? driver->navigation() : Progress{};
+  return driver && decision_.mode == row ? driver->progress(decision_.runs).navigation : Progress{};
 }
 
 void Behaviour::stop_changed(bool stopped, Time now) {
@@ -282,13 +281,13 @@ Result<void> Behaviour::stick(const Twist2& twist, Time now) {
   stick_.update(twist, now);
   if (!decision_.mode->manual())
     return twist.zero() ? Result<void>{} : refuse(Reason::wrong_mode, decision_.mode->name);
-  if (ModeModule* current = module(*decision_.mode)) current->stick(twist, now);
+  if (ModeModule* current = module(*decision_.mode)) current->steer(twist, now);
   return {};
 }
 
 void Behaviour::program(const Twist2& velocity, Time now) {
   for (const Mode& mode : modes_)
-    if (mode.row.accepts == Accepts::program && mode.module) mode.module->program(velocity, now);
+    if (mode.row.accepts == Accepts::program && mode.module) mode.module->steer(velocity, now);
 }
 
 void Behaviour::set_progress(const Progress& progress) {
@@ -346,7 +345,7 @@ void Behaviour::tick(Time now) {
   mux_.enable(passes ? decision_.mode->name : std::string_view{}, now);
   if (ModeModule* current = module(*decision_.mode)) {
     current->tick(passes, now);
-    if (current->finished()) return hold(Reason::none, now);
+    if (current->progress(passes).finished) return hold(Reason::none, now);
   }
   watch(now);
   BehaviourView is = view();
@@ -408,7 +407,7 @@ BehaviourView Behaviour::view() const {
   }
   for (const Mode& mode : modes_)
     if (mode.module && v.exploration.state == ExplorationState::none)
-      v.exploration = mode.module->exploration();
+      v.exploration = mode.module->progress(false).exploration;
   v.reason = stopped_                           ? Reason::stopped
              : p.state == GoalState::blocked    ? p.reason
              : v.moving_allowed                 ? Reason::none

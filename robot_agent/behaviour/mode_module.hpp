@@ -21,12 +21,15 @@ inline constexpr double kFarthestPlace = 10'000.0;
 
 enum class GoalState : std::uint8_t { none, kept, active, blocked, reached };
 
-/// A mode's goal and the robot's progress towards it.
+/// A mode's goal and the robot's progress towards it, and what else the mode reports.
 struct ModeProgress {
   GoalState state{GoalState::none};
   std::uint32_t goal_id{};
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};  ///< Map frame, m.
   Reason reason{Reason::none};                    ///< Why it is blocked.
+  bool finished{};                                ///< Nothing is left to do: the robot changes to hold.
+  Progress navigation{};                          ///< Navigation's progress, of `get_out`.
+  ExplorationView exploration{};                  ///< Of a mode that explores.
 };
 
 /// The context passed to a mode's module on construction.
@@ -67,8 +70,6 @@ class ModeModule {
   /// Adds the module's facts to the inputs of the conditions. Called in every mode.
   virtual void note(Facts&, Time) const {}
 
-  /// Whether the robot has what the mode needs; it is not installed otherwise.
-  virtual bool installed() const { return true; }
   /// Called when the mode was requested and admitted, also if the mode was already active.
   virtual void enter(Time) {}
   /// Called when the mode ended: another one was requested, or the robot fell to hold. A goal stays stored.
@@ -79,13 +80,14 @@ class ModeModule {
   /// paused.
   virtual void tick(bool passes, Time now) = 0;
 
-  /// Receives a fresh sample of the holder's stick (`Accepts::stick`), body frame.
-  virtual void stick(const Twist2&, Time) {}
-  /// Receives a velocity of the program that steers (`Accepts::program`), body frame. Called in every mode.
-  virtual void program(const Twist2&, Time) {}
+  /// Receives a velocity, body frame: a fresh sample of the holder's stick (`Accepts::stick`), or, in every
+  /// mode, one of the program that steers (`Accepts::program`).
+  virtual void steer(const Twist2&, Time) {}
   /// Checks a goal (`Accepts::goal`; map frame, m; z is NaN if not given), and sets the facts as they would
   /// be with this goal. Errors: out_of_range.
-  virtual Result<void> check_goal(const Eigen::Vector3d&, Facts&) const;
+  virtual Result<void> check_goal(const Eigen::Vector3d&, Facts&) const {
+    return {Reason::not_supported, "goto: the mode takes no goal"};
+  }
   /// Stores a goal that was checked and admitted; enter() follows.
   virtual void set_goal(const Eigen::Vector3d&) {}
   /// See Requests::limit_unknown.
@@ -95,15 +97,8 @@ class ModeModule {
   /// Receives navigation's progress towards the place that the module wrote last.
   virtual void navigated(const Progress&) {}
 
-  /// Returns navigation's progress, if the module keeps it.
-  virtual Progress navigation() const { return {}; }
   /// Returns the progress; `passes` as in tick(), false in other modes.
   virtual ModeProgress progress(bool /*passes*/) const { return {}; }
-
-  /// Whether the mode has nothing left to do: the robot changes to hold.
-  virtual bool finished() const { return false; }
-  /// Returns the exploration, if this module explores.
-  virtual ExplorationView exploration() const { return {}; }
 
   /// Writes the state that must survive a restart; equal states write equal bytes.
   virtual void store(KeptBehaviour&) const {}

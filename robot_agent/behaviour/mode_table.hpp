@@ -79,7 +79,8 @@ struct ModeRow {
   OnHandover on_handover{};
   /// In the order in which they are reported to operators.
   std::vector<Condition> conditions{};
-  /// Makes the mode's module; null: nothing moves the robot in this mode.
+  /// Makes the mode's module, or none if the robot lacks what the mode needs: the mode is then not installed.
+  /// Null: nothing moves the robot in this mode.
   std::unique_ptr<ModeModule> (*make)(const ModeContext&){};
   Duration output_lifetime{};  ///< Period for which the module's last output is valid (rule 6).
   bool optional{};             ///< A tree may omit the mode; it is then not installed.

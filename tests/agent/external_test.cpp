@@ -34,12 +34,12 @@ class External : public testing::Test {
 };
 
 TEST_F(External, PassesWhileItsSourceIsEnabled) {
-  external.program({0.4, 0, 0.1}, now);
+  external.steer({0.4, 0, 0.1}, now);
   step(50ms);
   EXPECT_EQ(nav.last, Motion{Stand{}}) << "nobody enabled it";
   mux.enable("external", now);
   step(100ms);
-  external.program({0.4, 0, 0.1}, now);
+  external.steer({0.4, 0, 0.1}, now);
   step(50ms);
   EXPECT_EQ(nav.last, (Motion{Velocity{{0.4, 0, 0.1}, true}}));
 }
@@ -47,7 +47,7 @@ TEST_F(External, PassesWhileItsSourceIsEnabled) {
 TEST_F(External, SilenceIsZeroAfterHalfASecond) {
   mux.enable("external", now);
   step(100ms);
-  external.program({0.4, 0, 0}, now);
+  external.steer({0.4, 0, 0}, now);
   step(450ms);
   EXPECT_NE(nav.last, Motion{Stand{}});
   EXPECT_TRUE(external.fresh(now));
@@ -59,8 +59,8 @@ TEST_F(External, SilenceIsZeroAfterHalfASecond) {
 TEST_F(External, WhatIsNoNumberIsSilence) {
   mux.enable("external", now);
   step(100ms);
-  external.program({std::numeric_limits<double>::quiet_NaN(), 0, 0}, now);
-  external.program({0, std::numeric_limits<double>::infinity(), 0}, now);
+  external.steer({std::numeric_limits<double>::quiet_NaN(), 0, 0}, now);
+  external.steer({0, std::numeric_limits<double>::infinity(), 0}, now);
   step(50ms);
   EXPECT_EQ(nav.last, Motion{Stand{}});
   EXPECT_FALSE(external.fresh(now));

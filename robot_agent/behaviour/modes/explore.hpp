@@ -19,20 +19,20 @@ class ExploreMode : public ModeModule {
   static constexpr double kFar = 16.0;             ///< m
 
   explicit ExploreMode(ModeContext context) : context_(std::move(context)) {}
+  /// Robots that fly, and those without a router, have no explorer.
   static std::unique_ptr<ModeModule> make(const ModeContext& context) {
-    return std::make_unique<ExploreMode>(context);
+    return context.explore ? std::make_unique<ExploreMode>(context) : nullptr;
   }
 
-  /// Robots that fly, and those without a router, have no explorer.
-  bool installed() const override { return context_.explore != nullptr; }
   void note(Facts& facts, Time now) const override;
   void enter(Time now) override;
   void leave(Time) override { active_ = false; }
   void tick(bool passes, Time now) override;
   void set_exploration(const ExploreRequest& request) override;
   void navigated(const Progress& progress) override { navigated_ = progress; }
-  bool finished() const override { return is_over(); }
-  ExplorationView exploration() const override { return active_ || is_over() ? view_ : ExplorationView{}; }
+  ModeProgress progress(bool) const override {
+    return {.finished = is_over(), .exploration = active_ || is_over() ? view_ : ExplorationView{}};
+  }
   void store(KeptBehaviour& kept) const override;
   void restore(const KeptBehaviour& kept) override;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cmath>
 #include <optional>
 
 #include "robot_agent/behaviour/mode_module.hpp"
@@ -21,7 +22,11 @@ class ExternalMode : public ModeModule {
   void note(Facts& facts, Time now) const override { facts.program_fresh = fresh(now); }
   void tick(bool, Time) override {}
   /// Receives a velocity; one that is not finite is ignored.
-  void program(const Twist2& velocity, Time now) override;
+  void steer(const Twist2& velocity, Time now) override {
+    if (!std::isfinite(velocity.vx) || !std::isfinite(velocity.vy) || !std::isfinite(velocity.wz)) return;
+    last_ = now;
+    output_.write(Velocity{velocity, true}, now);
+  }
   bool fresh(Time now) const { return last_ && now - *last_ <= kFresh; }
 
  private:

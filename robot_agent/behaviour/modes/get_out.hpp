@@ -19,7 +19,7 @@ class GetOutMode : public ModeModule {
   void enter(Time) override { navigated_ = {}; }
   void tick(bool passes, Time now) override;
   void navigated(const Progress& progress) override { navigated_ = progress; }
-  Progress navigation() const override { return navigated_; }
+  ModeProgress progress(bool) const override { return {.navigation = navigated_}; }
   void store(KeptBehaviour& kept) const override;
   void restore(const KeptBehaviour& kept) override;
 

@@ -13,7 +13,7 @@ class ManualMode : public ModeModule {
   }
 
   void tick(bool, Time) override {}  // Every sample passes at once, and none is repeated.
-  void stick(const Twist2& twist, Time now) override { output_.write(Velocity{twist}, now); }
+  void steer(const Twist2& twist, Time now) override { output_.write(Velocity{twist}, now); }
 
  private:
   Mux::Output output_;
@@ -28,7 +28,7 @@ class SmartJoystickMode : public ModeModule {
   }
 
   void tick(bool, Time) override {}
-  void stick(const Twist2& twist, Time now) override { output_.write(Guidance{twist}, now); }
+  void steer(const Twist2& twist, Time now) override { output_.write(Guidance{twist}, now); }
 
  private:
   Mux::Output output_;
