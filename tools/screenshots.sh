@@ -8,12 +8,12 @@ case "${1:-}" in
   *)
     echo "usage: tools/screenshots.sh"
     echo "  writes build/pictures/*.png with the tests of the window, and copies those that docs/gui has."
-    echo "  Build the tests first: ./run build. docs/gui/demo.png is of ./run demo --gui."
+    echo "  Build the tests first: ./run build release adit_tests. docs/gui/demo.png is of ./run demo --gui."
     [ "$1" = --help ] && exit 0 || exit 2
     ;;
 esac
 program=build/release/bin/test_gui_window
-[ -x "$program" ] || { echo "screenshots: there is no $program: ./run build makes it, where Qt 6 is installed" >&2; exit 1; }
+[ -x "$program" ] || { echo "screenshots: there is no $program: ./run build release adit_tests makes it, where Qt 6 is installed" >&2; exit 1; }
 pictures="$PWD/build/pictures"
 mkdir -p "$pictures"
 ADIT_GUI_PICTURES="$pictures" "$program" --gtest_brief=1

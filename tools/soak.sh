@@ -5,7 +5,7 @@
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 soak="${ADIT_BIN:-$root/build/release/bin}/soak"
-[ -x "$soak" ] || { echo "soak: no $soak; build it first: ./run build" >&2; exit 2; }
+[ -x "$soak" ] || { echo "soak: no $soak; build it first: ./run build release adit_benches" >&2; exit 2; }
 if unshare --net --mount true 2> /dev/null; then
   # shellcheck disable=SC2016
   exec unshare --net --mount sh -c 'mount -t tmpfs tmpfs /dev/shm && ip link set lo up && exec "$@"' soak "$soak" "$@"
