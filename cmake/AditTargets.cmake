@@ -75,7 +75,7 @@ endfunction()
 # Each case of a live test has a network and folders of its own (tests/live/isolated.sh), so all run side by side. They
 # run once more with the limits of an idle machine, label long, as NAME.InTime.
 # SERIAL: its cases never run beside other tests. FIXTURE: the ctest fixture that they need.
-# Under sanitizers only what they can tell about is built: address takes those labelled unit of the folders that read
+# Under sanitizers only what these can find faults in is built: address takes those labelled unit of the folders that read
 # foreign bytes, store, or have states; thread takes those in tests/client, tests/core, tests/wire (live ones over Fast DDS
 # too) and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
 function(adit_test name)
