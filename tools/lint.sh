@@ -140,6 +140,15 @@ check_sleeps() {
     sed 's/$/   <- sleeps/'
 }
 
+# --- sharing: no two tests share a folder, a port or a domain ---------------------------------------------
+# Files are below scratch_folder(), domains are those of live::domain(), ports are the kernel's choice. The locks of
+# live::Domains (process.cpp) are the machine's, and domains above 232 are none.
+check_sharing() {
+  files -name '*.hpp' -o -name '*.cpp' -o -name '*.sh' | grep '^tests/' | grep -v '^tests/lint/\|^tests/folders/\|^tests/live/isolated.sh' |
+    xargs -r grep -nE 'temp_directory_path|TempDir\(|mk[ds]temp\(|tmpnam|/tmp\b|htons\([1-9]|domain = [0-9]|"--(robot-)?domain", "[0-9]' /dev/null |
+    grep -vE '^tests/live/process.cpp:.*temp_directory_path|domain(",)? [="]+ ?(23[3-9]|[3-9][0-9]{2})\b' | sed 's/$/   <- shared with other tests/'
+}
+
 # --- citation: the version in CITATION.cff is the project's ------------------------------------------------
 check_citation() {
   local cited project
@@ -212,7 +221,7 @@ if [ "${1:-}" = --count ]; then
   exit
 fi
 checks=("$@")
-[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation spdx sleeps qml format shell)
+[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation spdx sleeps sharing qml format shell)
 status=0
 for check in "${checks[@]}"; do
   declare -F "check_$check" > /dev/null || { echo "lint: no check '$check'" >&2; exit 2; }

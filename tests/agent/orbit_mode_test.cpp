@@ -12,6 +12,7 @@
 #include "core/store/memory_disk.hpp"
 #include "robot_agent/behaviour/decider.hpp"
 #include "tests/agent/agent_bench.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::agent {
 namespace {
@@ -24,8 +25,7 @@ std::string write_tree() {
   std::ifstream shipped(source_folder() + "/config/trees/robot.xml");
   std::stringstream text;
   text << shipped.rdbuf();
-  const std::string file = testing::TempDir() + "/adit_orbit_" +
-                           testing::UnitTest::GetInstance()->current_test_info()->name() + ".xml";
+  const std::string file = scratch_folder() + "/orbit.xml";
   std::ofstream(file) << with_orbit(text.str());
   return file;
 }
@@ -36,7 +36,6 @@ class Orbit : public testing::Test {
     op.emplace(&bench.join("op1"));
     bench.run(2s);
   }
-  ~Orbit() override { std::filesystem::remove(tree); }
 
   AgentBench::Operator& station() { return **op; }
   double radius() const { return (Eigen::Vector2d(bench.pose.x, bench.pose.y) - kCentre).norm(); }

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "tests/bt/errors.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::bt::test {
 
@@ -12,13 +13,7 @@ namespace fs = std::filesystem;
 
 class Include : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("adit_bt_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_ / "sub");
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { fs::create_directories(folder_ / "sub"); }
 
   std::string write(const std::string& name, const std::string& content) {
     const auto path = folder_ / name;
@@ -32,7 +27,7 @@ class Include : public testing::Test {
     auto loaded = load_tree_file(tolerant(), path, main);
     return loaded.ok() ? "ok" : loaded.error().text;
   }
-  fs::path folder_;
+  fs::path folder_{scratch_folder()};
 };
 
 }  // namespace

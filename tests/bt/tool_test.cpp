@@ -22,14 +22,6 @@ struct Answer {
 
 class Tool : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("adit_tree_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   void write(const std::string& name, const std::string& content) {
     std::ofstream(folder_ / name) << content;
   }
@@ -44,7 +36,7 @@ class Tool : public testing::Test {
     answer.status = WIFEXITED(raw) ? WEXITSTATUS(raw) : -1;
     return answer;
   }
-  fs::path folder_;
+  fs::path folder_{adit::scratch_folder()};
 };
 
 constexpr const char* kTree = R"(<root BTCPP_format="4">

@@ -12,6 +12,7 @@
 
 #include "basestation/cli/run_line.hpp"
 #include "core/command/words.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::station::client {
 namespace {
@@ -27,8 +28,7 @@ TEST(Connection, QuotesTheWordsThatNeedIt) {
 }
 
 TEST(LineSocket, DoesNotWaitForAStationThatAcceptsNobody) {
-  char name[] = "/tmp/adit-backlog-XXXXXX";
-  const std::string folder = ::mkdtemp(name), path = folder + "/op1.sock";
+  const std::string path = scratch_folder() + "/op1.sock";
   const File listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -44,7 +44,6 @@ TEST(LineSocket, DoesNotWaitForAStationThatAcceptsNobody) {
     else
       refused = socket.error();
   }
-  std::filesystem::remove_all(folder);
   ASSERT_TRUE(refused) << "the queue was never full";
   EXPECT_EQ(refused->reason, Reason::cannot_read) << "no second station may be started beside it";
   EXPECT_THAT(refused->text, HasSubstr("hangs"));

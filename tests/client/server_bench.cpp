@@ -13,15 +13,12 @@ namespace adit::station::host {
 
 ServerBench::ServerBench(Duration grace) : grace_(grace) {
   EXPECT_EQ(::pipe(never_.data()), 0);
-  std::string name = (std::filesystem::temp_directory_path() / "adit-server-XXXXXX").string();
-  folder_ = ::mkdtemp(name.data());
   ::setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
   start_station();
 }
 
 ServerBench::~ServerBench() {
   end_station();
-  std::filesystem::remove_all(folder_);
   for (const int fd : never_) ::close(fd);
 }
 

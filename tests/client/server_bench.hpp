@@ -11,6 +11,7 @@
 #include "basestation/host/server.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "core/wire/memory/simulated_network.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::station::host {
 
@@ -31,7 +32,7 @@ class ServerBench : public testing::Test {
 
  private:
   std::array<int, 2> never_{};
-  std::string folder_{};
+  std::string folder_{scratch_folder()};
   Duration grace_;
   VirtualScheduler scheduler_{1};
   wire::SimulatedNetwork network_{scheduler_, {}};

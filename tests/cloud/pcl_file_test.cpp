@@ -8,16 +8,14 @@
 #include <fstream>
 #include <random>
 
+#include "tests/folders/folders.hpp"
+
 namespace adit::sim {
 namespace {
 
 class Pcd : public testing::Test {
  protected:
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
-                                  ("adit_pcd_" + std::to_string(::getpid()) + "_" +
-                                   testing::UnitTest::GetInstance()->current_test_info()->name());
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_{scratch_folder()};
   Result<CloudFile> read(const std::string& text) {
     std::ofstream(folder_ / "a.pcd", std::ios::binary) << text;
     return read_cloud_file(folder_ / "a.pcd");

@@ -9,6 +9,7 @@
 #include "core/config/platform_file.hpp"
 #include "core/config/search.hpp"
 #include "core/wire/link_file.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit {
 namespace {
@@ -16,18 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A folder that is gone afterwards.
+/// A folder for files below it.
 struct Folder {
-  Folder() : path(fs::temp_directory_path() / ("adit_config_test_" + std::to_string(::getpid()))) {
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
   std::string write(const std::string& name, const std::string& text) const {
     fs::create_directories((path / name).parent_path());
     std::ofstream(path / name) << text;
     return (path / name).string();
   }
-  fs::path path;
+  fs::path path{scratch_folder()};
 };
 
 TEST(Platforms, the_three_standard_ones_have_the_documented_values) {

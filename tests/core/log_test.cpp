@@ -9,6 +9,7 @@
 #include <regex>
 
 #include "core/exec/virtual_runtime.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit {
 namespace {
@@ -75,10 +76,9 @@ TEST(Log, levels_have_names) {
 }
 
 TEST(LiveLog, writes_both_clocks_into_a_file) {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("adit_log_test_" + std::to_string(::getpid()) + ".log");
+  const std::string path = scratch_folder() + "/agent.log";
   {
-    const auto sink = make_live_log({.level = LogLevel::debug, .console = false, .file = path.string()});
+    const auto sink = make_live_log({.level = LogLevel::debug, .console = false, .file = path});
     ASSERT_TRUE(sink) << sink.error().text;
     Log(*sink, "agent").info("started {}");
     Log(*sink, "agent").trace("below");
@@ -90,7 +90,6 @@ TEST(LiveLog, writes_both_clocks_into_a_file) {
       line, std::regex(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z \[ +-\] info  agent: started \{\})")))
       << line;
   EXPECT_FALSE(std::getline(file, more));
-  std::filesystem::remove(path);
 }
 
 TEST(LiveLog, a_file_that_cannot_be_written_is_an_error) {

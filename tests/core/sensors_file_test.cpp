@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/config/platform_file.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit {
 namespace {
@@ -17,9 +18,9 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 std::string write(const std::string& text) {
-  const fs::path file = fs::temp_directory_path() / ("adit_sensors_" + std::to_string(::getpid()) + ".yaml");
+  const std::string file = scratch_folder() + "/sensors.yaml";
   std::ofstream(file) << text;
-  return file.string();
+  return file;
 }
 
 const std::string kBody =

@@ -11,4 +11,8 @@ const std::string& source_folder();
 /// Where this build's programs are, without a slash at its end.
 const std::string& program_folder();
 
+/// A new, empty folder without a slash at its end, removed when the process ends. All files of tests are in
+/// such folders, so that no two tests share one.
+std::string scratch_folder();
+
 }  // namespace adit

@@ -44,6 +44,16 @@ put core/word.cpp '// TO''DO later\n'
 expect words 'core/word.cpp:1'
 put tests/s.cpp 'std::this_thread::sleep''_for(1s);\n'
 expect sleeps 'tests/s.cpp:1'
+put tests/a.cpp 'const auto folder = scratch_folder();\nopen({.domain = live::domain()});\nopen({.domain = 233});\n'
+put tests/a.sh 'x="$(mktemp -d)"\n'
+put sim/a.cpp 'std::filesystem::temp_directory_path();\n'
+expect sharing ""
+shared=0
+for line in 'std::filesystem::temp_directory_path()' 'testing::TempDir()' '::mkdtemp(name)' 'open("/tmp/x")' 'htons(7400)' \
+    'open({.domain = 77})' 'run({"basestation", "--domain", "7"})'; do
+  put "tests/shared$((++shared)).cpp" "\\n$line\\n"
+  expect sharing "tests/shared$shared.cpp:2:"
+done
 put basestation/gui/qml/A.qml '// SPDX-License-Identifier: Apache-2.0\nItem {\n  function onB(c) { d.e(c) }\n}\n'
 expect qml ""
 put basestation/gui/qml/A.qml "$(printf 'x\\n%.0s' $(seq 201))"

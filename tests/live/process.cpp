@@ -172,11 +172,7 @@ bool eventually(const std::function<bool()>& condition, Seconds limit) {
   return true;
 }
 
-Folder::Folder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "adit-test-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
-  path_ = pattern;
-}
+Folder::Folder() : path_(scratch_folder()) {}
 
 Folder::~Folder() {
   std::error_code ignored;  // a leftover file in the temporary folder fails no test

@@ -39,13 +39,10 @@ std::size_t lines(const std::string& text) {
 /// The commands that read clouds need the Point Cloud Library.
 class Clouds : public testing::Test {
  protected:
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("adit_navtool_" + std::to_string(::getpid()));
+  std::filesystem::path folder_{scratch_folder()};
   void SetUp() override {
     if (!ADIT_PCL) GTEST_SKIP() << "built without the Point Cloud Library";
-    std::filesystem::create_directories(folder_);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// Six clouds on a corridor along x, the sensor's frame or the map's.
   void write(bool in_map, bool wall) {
@@ -155,10 +152,9 @@ TEST_F(Clouds, TerrainTakesOnePoseForEachCloud) {
 }
 
 TEST(Navtool, RouteThroughTheBuilding) {
-  const auto picture =
-      std::filesystem::temp_directory_path() / ("adit_route_" + std::to_string(::getpid()) + ".png");
+  const std::string picture = scratch_folder() + "/route.png";
   const Ended ended =
-      run("route --map geb079.bt --from -5 -0.1 0 --to 20 -0.2 0 --json --picture " + picture.string());
+      run("route --map geb079.bt --from -5 -0.1 0 --to 20 -0.2 0 --json --picture " + picture);
   if (ended.status == 2 && ended.out.find("geb079") != std::string::npos) GTEST_SKIP() << ended.out;
   ASSERT_EQ(ended.status, 0) << ended.out;
   const auto json = nlohmann::json::parse(ended.out);
@@ -166,7 +162,6 @@ TEST(Navtool, RouteThroughTheBuilding) {
   EXPECT_NEAR(json["length"], 25.0, 1.0);
   EXPECT_LT(json["memory_bytes"], 100e6);
   EXPECT_GT(std::filesystem::file_size(picture), 1000u);
-  std::filesystem::remove(picture);
   // Beside the building.
   const Ended outside = run("route --map geb079.bt --from -5 -0.1 0 --to 10 30 0");
   EXPECT_EQ(outside.status, 1) << outside.out;

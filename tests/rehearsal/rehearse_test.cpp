@@ -16,6 +16,7 @@
 #include "core/wire/typed.hpp"
 #include "robot_agent/agent.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
+#include "tests/folders/folders.hpp"
 #include "tests/rehearsal/run_text.hpp"
 #include "tests/sim/scratch.hpp"
 
@@ -108,11 +109,10 @@ TEST(Rehearse, StationsAnnounceWhereTheScenarioPutsThem) {
   scenario.duration = 2s;
   scenario.script.clear();
   scenario.expectations.clear();
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("adit_places_" + std::to_string(::getpid()) + ".mcap");
+  const std::string file = scratch_folder() + "/places.mcap";
   RunParams params;
   params.make_agent = *make_agent_factory();
-  params.record = file.string();
+  params.record = file;
   ASSERT_TRUE(rehearse(scenario, *make_world(scenario.world), params).ok());
   std::map<std::string, std::array<float, 3>> places;
   std::ifstream in(file, std::ios::binary);
@@ -125,7 +125,6 @@ TEST(Rehearse, StationsAnnounceWhereTheScenarioPutsThem) {
       places[said.name()] = said.place();
   };
   ASSERT_TRUE(record::read_mcap(in, visitor).ok());
-  std::filesystem::remove(file);
   EXPECT_EQ(places, (std::map<std::string, std::array<float, 3>>{{"op1", {0.0F, 3.0F, 0.0F}},
                                                                  {"op2", {0.0F, -3.0F, 0.0F}}}));
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/folders/folders.hpp"
 #include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
@@ -33,9 +34,7 @@ struct Driven {
 
 /// A robot drives 4 m; its trajectories.
 Driven drive(const std::string& noise) {
-  const std::string folder =
-      (std::filesystem::temp_directory_path() / ("adit_trajectories_" + noise)).string();
-  std::filesystem::remove_all(folder);
+  const std::string folder = scratch_folder();
   auto scenario = parse_scenario(
       "world: {boxes: [[-4, 12, 4, 4.2, 0, 2]], floor: 0, ceiling: 3}\nduration: 10\nlink: lan\n"
       "odometry: {noise: " +
@@ -56,7 +55,6 @@ Driven drive(const std::string& noise) {
   out.truth = read_tum(files.truth);
   out.odometry = read_tum(files.odometry);
   out.map = read_tum(files.map);
-  std::filesystem::remove_all(folder);
   return out;
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -14,12 +12,7 @@ namespace adit::sim {
 /// A folder that vanishes after the test.
 class Scratch {
  public:
-  Scratch() {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("adit_") + info->test_suite_name() + "_" + info->name());
-    std::filesystem::create_directories(folder_);
-  }
+  Scratch() = default;
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
   ~Scratch() { std::filesystem::remove_all(folder_); }
@@ -31,7 +24,7 @@ class Scratch {
   }
 
  private:
-  std::filesystem::path folder_;
+  std::filesystem::path folder_{scratch_folder()};
 };
 
 /// The map of a real building, where ./run setup or the package put it; empty when it is not installed.

@@ -7,6 +7,7 @@
 
 #include "basestation/map/top_view.hpp"
 #include "basestation/map/trails.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::station {
 namespace {
@@ -46,15 +47,13 @@ TEST(TopView, AFlatMapOfAPlanarLidarShowsItsWalls) {
 }
 
 TEST(MapPicture, IsWrittenAsAWhole) {
-  const std::string file = testing::TempDir() + "adit_map_picture.png";
-  std::filesystem::remove(file);
+  const std::string file = scratch_folder() + "/map.png";
   MapPicture picture{.title = "a map", .subtitle = "of a test"};
   picture.robots.push_back(
       {.name = "r1", .label = "wheeled", .trail = {{0, 0, 0}, {1, 0.3, 0}}, .now = {1, 0.3, 0}});
   ASSERT_TRUE(write_map_picture(some_image(), picture, file).ok());
   EXPECT_GT(std::filesystem::file_size(file), 1000U);
   EXPECT_FALSE(std::filesystem::exists(file + ".part"));
-  std::filesystem::remove(file);
 }
 
 TEST(MapPicture, SaysWhyItCannotBeWritten) {

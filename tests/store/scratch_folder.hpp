@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <stdlib.h>
-
 #include <filesystem>
 #include <string>
+
+#include "tests/folders/folders.hpp"
 
 namespace adit::store {
 
 /// A folder of this test alone, removed with it.
 class ScratchFolder {
  public:
-  ScratchFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "adit-store-XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
+  ScratchFolder() = default;
   ~ScratchFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
@@ -25,7 +22,7 @@ class ScratchFolder {
   }
 
  private:
-  std::string path_;
+  std::string path_{scratch_folder()};
 };
 
 inline std::vector<std::uint8_t> bytes(std::string_view text) { return {text.begin(), text.end()}; }

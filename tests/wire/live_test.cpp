@@ -14,6 +14,7 @@
 #include <future>
 
 #include "core/wire/fastdds/fastdds_participant.hpp"
+#include "tests/folders/folders.hpp"
 #include "tests/wire/nets.hpp"
 #include "tests/wire/samples.hpp"
 
@@ -288,9 +289,7 @@ TEST(LiveWire, AHungReaderOfScansCostsNoMemory) {
 TEST(LiveWire, TheEnvironmentOfRos2ChangesNothing) {
   LiveNet net;
   const auto strand = net.strand("test");
-  char folder[] = "/tmp/adit-profiles-XXXXXX";
-  ASSERT_NE(::mkdtemp(folder), nullptr);
-  const std::string profiles = std::string(folder) + "/profiles.xml";
+  const std::string profiles = scratch_folder() + "/profiles.xml";
   std::ofstream(profiles) << "<dds><log><use_default>FALSE</use_default></log><library_settings>"
                              "<intraprocess_delivery>FULL</intraprocess_delivery></library_settings></dds>";
   ::setenv("ROS_DISCOVERY_SERVER", "127.0.0.1:11811", 1);
@@ -301,7 +300,6 @@ TEST(LiveWire, TheEnvironmentOfRos2ChangesNothing) {
   EXPECT_TRUE(net.until([&] { return writer->matched() == 1; }));
   ::unsetenv("ROS_DISCOVERY_SERVER");
   ::unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");
-  std::filesystem::remove_all(folder);
 }
 
 TEST(LiveWire, WrongParametersAreErrors) {

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <ostream>
 
+#include "tests/folders/folders.hpp"
+
 namespace adit::perception {
 namespace {
 
@@ -16,16 +18,12 @@ namespace fs = std::filesystem;
 class MapFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "map_file_XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
     for (int x = 0; x < 20; ++x)
       for (int y = 0; y < 20; ++y) {
         image_.set({x, y, -1}, Voxel::occupied);
         for (int z = 0; z < 5; ++z) image_.set({x, y, z}, x == 19 ? Voxel::occupied : Voxel::free);
       }
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   std::vector<std::string> files() const {
     std::vector<std::string> names;
@@ -35,7 +33,7 @@ class MapFile : public ::testing::Test {
     return names;
   }
 
-  fs::path folder_{};
+  fs::path folder_{scratch_folder()};
   VoxelImage image_{};
 };
 
