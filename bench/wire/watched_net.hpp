@@ -55,12 +55,12 @@ class WatchedNet final : public live::Net {
   void silence(const std::string& machine) override { inner_->silence(machine); }
   void on(Executor& strand, const std::function<void()>& work) override { inner_->on(strand, work); }
   Duration clock() const override { return inner_->clock(); }
-
- private:
-  bool wait(const std::function<bool()>& condition, Duration limit) override {
+  bool until(const std::function<bool()>& condition, Duration limit) override {
     return inner_->until(condition, limit);
   }
+  void pass(Duration time) override { inner_->pass(time); }
 
+ private:
   std::unique_ptr<live::Net> inner_;
   Passages& passages_;
 };

@@ -204,7 +204,7 @@ TEST_F(ParentTest, KillsAChildThatFallsSilentAndRestartsIt) {
       params, [] {}, [&] { ++zeros; });
   const auto started = std::chrono::steady_clock::now();
   EXPECT_EQ(parent.run(), 0);
-  EXPECT_LT(std::chrono::steady_clock::now() - started, 5s);
+  EXPECT_LT(std::chrono::steady_clock::now() - started, 30s);  // not the 60 s of its sleep
   EXPECT_GE(zeros, 1);
 }
 

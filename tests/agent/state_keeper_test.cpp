@@ -272,7 +272,7 @@ TEST(KeeperLive, ADiskThatDoesNotAnswerHoldsUpNothing) {
   };
   const auto wait_for = [&](std::size_t lines) {
     std::unique_lock lock(mutex);
-    return changed.wait_for(lock, 5s, [&] { return log.size() >= lines; });
+    return changed.wait_for(lock, 60s, [&] { return log.size() >= lines; });
   };
   std::unique_ptr<StateKeeper> keeper;
   Timer beat;

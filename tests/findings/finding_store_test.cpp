@@ -234,7 +234,7 @@ TEST(FindingStoreLive, ALostCompletionDoesNotEndItsWrites) {
   writer->post([&] { written.set_value(); });  // comes after the batch, which runs now or has run
   written.get_future().wait();
   go.set_value();
-  EXPECT_EQ(saved.get_future().wait_for(std::chrono::seconds(5)), std::future_status::ready);
+  EXPECT_EQ(saved.get_future().wait_for(std::chrono::seconds(60)), std::future_status::ready);
   std::promise<void> gone;
   home->post([&] {
     finding_store.reset();

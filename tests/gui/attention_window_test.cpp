@@ -71,7 +71,7 @@ TEST_F(AttentionWindow, AGrantIsHeldAndATapIsNotEnough) {
   touch(at);
   EXPECT_TRUE(sink.lines.empty());
   finger_down(at);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !sink.lines.empty(); }, 3000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !sink.lines.empty(); }, 30'000));
   finger_up(at);
   EXPECT_THAT(sink.lines, ElementsAre("grant r4 op2"));
 }

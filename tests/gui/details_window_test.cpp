@@ -32,7 +32,7 @@ TEST_F(Window, DetailsAllowARobotToMakeWayAndHandItOverOnlyByHolding) {
   touch(at);
   EXPECT_EQ(sink.lines.size(), 1U);
   finger_down(at);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return sink.lines.size() == 2; }, 3000));
+  ASSERT_TRUE(QTest::qWaitFor([&] { return sink.lines.size() == 2; }, 30'000));
   finger_up(at);
   EXPECT_EQ(sink.lines.back(), "grant r1 op2");
 }

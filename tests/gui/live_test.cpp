@@ -22,11 +22,13 @@ class RobotWindow : public StationWindow {
  protected:
   void open_window(const std::string& operator_name, unsigned domain) {
     ASSERT_NO_FATAL_FAILURE(open_station(operator_name, domain));
-    ASSERT_TRUE(QTest::qWaitFor([&] { return robot() && robot()->located; }, 20'000));
+    ASSERT_TRUE(soon([&] { return robot() && robot()->located; }));
   }
   const station::Robot* robot() { return control->world().robot("r1"); }
-  /// Whether it comes true while the window runs.
-  static bool soon(const std::function<bool()>& holds, int ms = 10'000) { return QTest::qWaitFor(holds, ms); }
+  /// Whether it comes true while the window runs, within a time that is stretched by live::patience().
+  static bool soon(const std::function<bool()>& holds, int ms = 10'000) {
+    return QTest::qWaitFor(holds, static_cast<int>(ms * live::patience()));
+  }
   void take_by_finger() {
     settle_layout();
     touch(middle("card_r1"));
@@ -139,10 +141,10 @@ TEST_F(LiveWindow, DrivesByTheStickOfTheScreenAndLetsGo) {
   EXPECT_TRUE(soon([&] { return !control->drive()->driving(); }));
 }
 
-/// How long the robot still moved after that, s; more than 5 if it did not stop.
+/// How long the robot still moved after that, s; at least 5, stretched, if it did not stop.
 double until_zero(live::Net& net, const std::function<bool()>& moves) {
   const Duration begun = net.clock();
-  if (!net.until([&] { return !moves(); }, std::chrono::seconds(5))) return 6.0;
+  net.until([&] { return !moves(); }, std::chrono::seconds(5));
   return seconds(net.clock() - begun);
 }
 
@@ -157,7 +159,7 @@ TEST_F(LiveWindow, AWindowThatIsKilledWhileDrivingStopsTheRobotAndNothingElse) {
                 environment);
   ASSERT_TRUE(programs.net_->until([&] { return moves(); }, std::chrono::seconds(30))) << other.out();
   other.signal(SIGKILL);
-  EXPECT_LT(until_zero(*programs.net_, [&] { return moves(); }), 0.6);
+  EXPECT_LT(until_zero(*programs.net_, [&] { return moves(); }), 0.6 * live::patience());
   other.wait(live::Seconds(5));
   EXPECT_TRUE(daemon.running());
   EXPECT_EQ(programs.op("op1", {"list"}).exit_code, 0) << "the station works on";
@@ -171,7 +173,7 @@ TEST_F(LiveWindow, AStationThatIsKilledWhileDrivingStopsTheRobotAndTheWindowStay
   drive_by_finger();
   ASSERT_TRUE(soon([&] { return moves(); }));
   daemon.signal(SIGKILL);
-  EXPECT_LT(until_zero(*programs.net_, [&] { return moves(); }), 0.6);
+  EXPECT_LT(until_zero(*programs.net_, [&] { return moves(); }), 0.6 * live::patience());
   daemon.wait(live::Seconds(5));
   EXPECT_TRUE(soon([&] { return control->ended() && !control->drive()->driving(); }, 3000));
   finger_up(middle("touchStick"));

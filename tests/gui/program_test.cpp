@@ -34,6 +34,10 @@ class Program : public testing::Test {
     words.insert(words.begin(), {"adit_gui", "--domain", domain()});
     return live::run(words, environment, Seconds(30));
   }
+  /// Whether it comes true while the window runs.
+  static bool soon(const std::function<bool()>& holds) {
+    return QTest::qWaitFor(holds, static_cast<int>(15'000 * live::patience()));
+  }
   std::string file(const std::string& name) const {
     return folder_.environment().at("XDG_RUNTIME_DIR") + "/" + name;
   }
@@ -88,20 +92,19 @@ TEST_F(Program, CommandsGoToTheStationAndTheirOutcomesCome) {
   QtStation qt_station(std::move(*opened));
   Control control(qt_station);
   qt_station.show_in(control);
-  ASSERT_TRUE(QTest::qWaitFor([&] { return control.operator_name() == "op1"; }, 15000));
+  ASSERT_TRUE(soon([&] { return control.operator_name() == "op1"; }));
   std::string text;
   qt_station.execute("take r9", [&](const station::CommandOutcome& outcome) { text = outcome.error; });
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !text.empty(); }, 15000));
+  ASSERT_TRUE(soon([&] { return !text.empty(); }));
   EXPECT_THAT(text, HasSubstr("r9"));
   control.stopAll();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return control.outcome_kind() != "sent"; }, 30000))
-      << control.outcome().toStdString();
+  ASSERT_TRUE(soon([&] { return control.outcome_kind() != "sent"; })) << control.outcome().toStdString();
   // When the station ends, the window says so and can start it again.
   live::run({"basestation", "--domain", domain(), "down"}, folder_.environment());
-  ASSERT_TRUE(QTest::qWaitFor([&] { return control.ended(); }, 15000));
+  ASSERT_TRUE(soon([&] { return control.ended(); }));
   EXPECT_TRUE(control.silent_text().startsWith("NO STATION"));
   control.restartStation();
-  ASSERT_TRUE(QTest::qWaitFor([&] { return !control.ended() && !control.silent(); }, 10000))
+  ASSERT_TRUE(soon([&] { return !control.ended() && !control.silent(); }))
       << control.silent_text().toStdString();
 }
 

@@ -13,7 +13,7 @@ TEST_F(Window, AFingerThatRestsOnACardAddsItOrTakesItOut) {
   const auto rest_on = [&](const QString& card, std::size_t robots) {
     const QPoint at = middle(card);
     finger_down(at);
-    EXPECT_TRUE(QTest::qWaitFor([&] { return control.selection().size() == robots; }, 3000));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return control.selection().size() == robots; }, 30'000));
     finger_up(at);
     settle();
   };

@@ -128,7 +128,7 @@ class TabsTest : public Window {
       return std::find_if(sink.asked.rbegin(), sink.asked.rend(),
                           [&](const auto& next) { return next.first == query; });
     };
-    ASSERT_TRUE(QTest::qWaitFor([&] { return asked() != sink.asked.rend(); }, 3000)) << query;
+    ASSERT_TRUE(QTest::qWaitFor([&] { return asked() != sink.asked.rend(); }, 30'000)) << query;
     const auto found = std::prev(asked().base());
     const auto done = std::move(found->second);
     sink.asked.erase(found);

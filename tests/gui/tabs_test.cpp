@@ -75,7 +75,7 @@ TEST_F(TabsTest, TheStationIsAskedOnlyWhileATabWantsIt) {
   QTest::qWait(1200);
   EXPECT_EQ(sink.queries.size(), 2U) << "not again before the answer";
   answer(answer_of(health_of_ten()));
-  EXPECT_TRUE(QTest::qWaitFor([&] { return sink.queries.size() == 3; }, 3000));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return sink.queries.size() == 3; }, 30'000));
   EXPECT_EQ(sink.queries.back(), "health");
   answer(answer_of(health_of_ten()));
   open("log");
@@ -170,7 +170,8 @@ TEST_F(TabsTest, FindingsAreJudgedByATapAndTakenBack) {
   QTest::qWait(400);
   EXPECT_THAT(sink.queries, IsEmpty()) << "a question is under way";
   answer(answer_of(some_findings()));
-  EXPECT_TRUE(QTest::qWaitFor([&] { return !sink.queries.empty(); }, 2000)) << "the list is asked for again";
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !sink.queries.empty(); }, 30'000))
+      << "the list is asked for again";
 }
 
 TEST_F(TabsTest, ANoteIsTypedWithoutGivingCommands) {

@@ -59,10 +59,10 @@ class HostsTest : public testing::Test {
     return nlohmann::json::object();
   }
   bool present() { return !listed().value("lost", true); }
-  /// Seconds until the station hears the robot; `limit` when it did not.
-  double until_present(double limit = 10.0) {
+  /// Seconds until the station hears the robot; more than 10 s, stretched, when it did not.
+  double until_present() {
     const auto begin = Clock::now();
-    if (!eventually([&] { return present(); }, Seconds(limit))) return limit;
+    (void)eventually([&] { return present(); });
     return std::chrono::duration<double>(Clock::now() - begin).count();
   }
 
@@ -74,7 +74,7 @@ TEST_F(HostsTest, FindEachOtherByMulticastOverAThinLink) {
   hosts_->shape("robot", 500);
   const Process base = station();
   const Process robot = agent();
-  EXPECT_LT(until_present(), 3.0);
+  EXPECT_LT(until_present(), 3.0 * live::patience());
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"take", "r1"}, {"lock", "r1"}, {"stop", "r1"}, {"reset", "r1"}}) {
     const auto done = op(command);
@@ -87,7 +87,7 @@ TEST_F(HostsTest, FindEachOtherByAddressWithoutMulticast) {
   hosts_->shape("robot", 500);
   const Process base = station({"10.77.0.1"});
   const Process robot = agent({"10.77.0.2"});
-  EXPECT_LT(until_present(), 3.0);
+  EXPECT_LT(until_present(), 3.0 * live::patience());
   EXPECT_EQ(op({"take", "r1"}).exit_code, 0);
 }
 
@@ -95,7 +95,7 @@ TEST_F(HostsTest, ARobotBackUnderAnotherAddressIsFoundAgain) {
   const Process base = station();
   {
     Process robot = agent();
-    ASSERT_LT(until_present(), 5.0);
+    ASSERT_LT(until_present(), 5.0 * live::patience());
     EXPECT_EQ(op({"take", "r1"}).exit_code, 0);
     robot.signal(SIGKILL);
     robot.wait(Seconds(5));
@@ -103,7 +103,7 @@ TEST_F(HostsTest, ARobotBackUnderAnotherAddressIsFoundAgain) {
   ASSERT_TRUE(eventually([&] { return listed().value("lost", false); }, Seconds(6)));
   hosts_->readdress("robot", "10.77.0.9");
   const Process back = agent();
-  EXPECT_LT(until_present(), 3.0);
+  EXPECT_LT(until_present(), 3.0 * live::patience());
   EXPECT_EQ(op({"take", "r1"}).exit_code, 0);
   EXPECT_EQ(op({"stop", "r1"}).exit_code, 0);
 }
@@ -112,14 +112,15 @@ TEST_F(HostsTest, ARobotBackUnderAnotherAddressFindsItsStationWithoutMulticast) 
   const Process base = station({"10.77.0.1"});
   {
     Process robot = agent({"10.77.0.2"});
-    ASSERT_LT(until_present(), 5.0);
+    ASSERT_LT(until_present(), 5.0 * live::patience());
     robot.signal(SIGKILL);
     robot.wait(Seconds(5));
   }
   ASSERT_TRUE(eventually([&] { return listed().value("lost", false); }, Seconds(6)));
   hosts_->readdress("robot", "10.77.0.9");
   const Process back = agent({"10.77.0.2"});
-  EXPECT_LT(until_present(), 3.0) << "the station's list has the old address: the robot asks it";
+  EXPECT_LT(until_present(), 3.0 * live::patience())
+      << "the station's list has the old address: the robot asks it";
   EXPECT_EQ(op({"take", "r1"}).exit_code, 0);
 }
 
@@ -127,14 +128,14 @@ TEST_F(HostsTest, CommandsWorkAgainAfterTheCableWasPulled) {
   hosts_->shape("robot", 500);
   const Process base = station();
   const Process robot = agent();
-  ASSERT_LT(until_present(), 5.0);
+  ASSERT_LT(until_present(), 5.0 * live::patience());
   EXPECT_EQ(op({"take", "r1"}).exit_code, 0);
   for (const char* host : {"robot", "base"}) {
     hosts_->link(host, false);
     EXPECT_TRUE(eventually([&] { return listed().value("lost", false); }, Seconds(6))) << host;
     EXPECT_NE(op({"lock", "r1"}).exit_code, 0) << "nobody can have answered that";
     hosts_->link(host, true);
-    EXPECT_LT(until_present(), 3.0) << host;
+    EXPECT_LT(until_present(), 3.0 * live::patience()) << host;
     const auto locked = op({"lock", "r1"});
     EXPECT_EQ(locked.exit_code, 0) << host << ": " << locked.err;
     EXPECT_TRUE(listed().value("mine", false)) << "still the holder";

@@ -20,9 +20,9 @@ TEST_P(Killed, ZeroAtTheDriverAtOnceAndBackWithItsHolder) {
   ASSERT_TRUE(lab.enter(GetParam()));
   const auto killed = lab.kill_agent();
   ASSERT_TRUE(killed.zero) << lab.err();
-  EXPECT_LT(*killed.zero, 300.0);
+  EXPECT_LT(*killed.zero, 300.0 * patience());
   ASSERT_TRUE(killed.back) << lab.err();
-  EXPECT_LT(*killed.back, 2000.0);
+  EXPECT_LT(*killed.back, 2000.0 * patience());
   EXPECT_EQ(killed.moved, 0);
 }
 INSTANTIATE_TEST_SUITE_P(Modes, Killed, testing::Values("hold", "manual", "smart_joystick", "waypoint"));
@@ -33,12 +33,12 @@ TEST(Components, ACrashIsBackSoonAndAHangIsFoundWithinASecond) {
   for (const char* component : {"planner", "router", "sensors", "command"}) {
     const auto crashed = lab.crash(component);
     ASSERT_TRUE(crashed.told && crashed.back) << component << ": " << lab.err();
-    EXPECT_LT(*crashed.back, 500.0) << component;
+    EXPECT_LT(*crashed.back, 500.0 * patience()) << component;
   }
   const pid_t before = lab.agent();
   const auto hung = lab.hang("planner");
   ASSERT_TRUE(hung.told && hung.back) << lab.err();
-  EXPECT_LT(*hung.told, 1500.0);
+  EXPECT_LT(*hung.told, 1500.0 * patience());
   EXPECT_EQ(lab.agent(), before) << "the process goes on without that thread";
   EXPECT_THAT(lab.console("health"), testing::HasSubstr("hung 1"));
 }
@@ -50,7 +50,7 @@ TEST(Components, AHungCommandStrandEndsTheAgentWhichComesBack) {
   const pid_t before = lab.agent();
   const auto hung = lab.hang("command");
   ASSERT_TRUE(hung.told && hung.back) << lab.err();
-  EXPECT_LT(*hung.told, 1500.0);
+  EXPECT_LT(*hung.told, 1500.0 * patience());
   EXPECT_NE(lab.agent(), before);
 }
 

@@ -35,7 +35,7 @@ class RehearsalNet : public Net {
   void silence(const std::string& machine) override { network_.crash(machine); }
   void on(Executor&, const std::function<void()>& work) override { work(); }
   Duration clock() const override { return scheduler_.elapsed(); }
-  bool wait(const std::function<bool()>& condition, Duration limit) override {
+  bool until(const std::function<bool()>& condition, Duration limit) override {
     const Duration end = scheduler_.elapsed() + limit;
     while (!condition()) {
       if (scheduler_.elapsed() >= end) return false;
@@ -43,6 +43,7 @@ class RehearsalNet : public Net {
     }
     return true;
   }
+  void pass(Duration time) override { scheduler_.run_until(scheduler_.elapsed() + time); }
 
  private:
   VirtualScheduler scheduler_{1};
@@ -74,9 +75,10 @@ class LiveNet : public Net {
     });
     done.get_future().wait();
   }
-  bool wait(const std::function<bool()>& condition, Duration limit) override {
+  bool until(const std::function<bool()>& condition, Duration limit) override {
     return eventually(condition, Seconds(limit));
   }
+  void pass(Duration time) override { live::pass(Seconds(time)); }
 
  private:
   static std::unique_ptr<wire::Participant> join(const wire::FastDdsParams& params) {

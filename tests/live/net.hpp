@@ -13,13 +13,6 @@
 
 namespace adit::live {
 
-/// How much longer than in the release build things may take.
-#if defined(__SANITIZE_THREAD__)
-inline constexpr int kSlack = 5;
-#else
-inline constexpr int kSlack = 1;
-#endif
-
 /// A few machines with their radio and inner networks, in rehearsal or live in this process over Fast DDS,
 /// so that the same test body runs on both.
 class Net {
@@ -34,19 +27,12 @@ class Net {
   virtual void silence(const std::string& machine) = 0;
   /// Runs the work on that strand and waits for its end.
   virtual void on(Executor& strand, const std::function<void()>& work) = 0;
-  /// Lets time pass until the condition holds; false when it does not within `limit`, which a sanitizer
-  /// stretches.
-  bool until(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(10)) {
-    return wait(condition, limit * kSlack);
-  }
+  /// Lets time pass until the condition holds; false when it does not within `limit`, which live is stretched
+  /// by patience().
+  virtual bool until(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(10)) = 0;
   /// One clock for all machines, which they do not have.
   virtual Duration clock() const = 0;
-  void pass(Duration time) {
-    wait([] { return false; }, time);
-  }
-
- protected:
-  virtual bool wait(const std::function<bool()>& condition, Duration limit) = 0;
+  virtual void pass(Duration time) = 0;
 };
 
 /// `link`: between all machines, on the radio; `inner`: one way on the robots' inner networks.

@@ -12,6 +12,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -25,17 +27,6 @@ namespace adit::live {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
-
-/// Blocks for that long on a timer of the kernel.
-void wait_on_timer(Seconds period) {
-  const int fd = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC);
-  itimerspec spec{};
-  spec.it_value.tv_nsec = static_cast<long>(period.count() * 1e9);
-  timerfd_settime(fd, 0, &spec, nullptr);
-  pollfd p{fd, POLLIN, 0};
-  poll(&p, 1, 1000);
-  close(fd);
-}
 
 std::string program(const std::string& name) {
   return name.find('/') == std::string::npos ? program_folder() + "/" + name : name;
@@ -55,6 +46,14 @@ bool drain(int fd, std::string& into) {
 }
 
 }  // namespace
+
+double patience() {
+  static const double factor = [] {
+    const char* text = getenv("ADIT_PATIENCE");
+    return text != nullptr ? std::stod(text) : 10.0;
+  }();
+  return factor;
+}
 
 Process::Process(std::vector<std::string> arguments, std::map<std::string, std::string> environment) {
   int out[2], err[2];
@@ -132,7 +131,7 @@ bool Process::pump(Seconds limit) {
 }
 
 bool Process::wait_for_output(const std::string& text, Seconds limit) {
-  const auto end = SteadyClock::now() + limit;
+  const auto end = SteadyClock::now() + limit * patience();
   for (;;) {
     if (out_.find(text) != std::string::npos || err_.find(text) != std::string::npos) return true;
     if (SteadyClock::now() > end) return false;
@@ -143,10 +142,10 @@ bool Process::wait_for_output(const std::string& text, Seconds limit) {
 }
 
 Finished Process::wait(Seconds limit) {
-  const auto end = SteadyClock::now() + limit;
+  const auto end = SteadyClock::now() + limit * patience();
   while (running() && SteadyClock::now() < end) {
     // Once both pipes are closed poll returns at once: wait on a timer instead.
-    if (!pump(Seconds(0.02))) wait_on_timer(Seconds(0.01));
+    if (!pump(Seconds(0.02))) pass(Seconds(0.01));
   }
   if (running()) {
     kill(pid_, SIGKILL);
@@ -164,12 +163,23 @@ Finished run(std::vector<std::string> arguments, std::map<std::string, std::stri
 }
 
 bool eventually(const std::function<bool()>& condition, Seconds limit) {
-  const auto end = SteadyClock::now() + limit;
+  const auto end = SteadyClock::now() + limit * patience();
   while (!condition()) {
     if (SteadyClock::now() > end) return false;
-    wait_on_timer(Seconds(0.01));
+    pass(Seconds(0.01));
   }
   return true;
+}
+
+void pass(Seconds time) {
+  const int fd = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC);
+  itimerspec spec{};
+  spec.it_value.tv_sec = static_cast<time_t>(time.count());
+  spec.it_value.tv_nsec = static_cast<long>((time.count() - std::floor(time.count())) * 1e9);
+  timerfd_settime(fd, 0, &spec, nullptr);
+  pollfd p{fd, POLLIN, 0};
+  while (poll(&p, 1, -1) < 0 && errno == EINTR) continue;
+  close(fd);
 }
 
 Folder::Folder() : path_(scratch_folder()) {}
@@ -212,7 +222,7 @@ Domains::Domains() {
     }
     return false;
   };
-  if (!eventually(take, Seconds(300))) throw std::runtime_error("all DDS domains for tests are taken");
+  if (!eventually(take, Seconds(30))) throw std::runtime_error("all DDS domains for tests are taken");
 }
 
 Domains::~Domains() { close(lock_); }

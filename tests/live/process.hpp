@@ -12,6 +12,12 @@ namespace adit::live {
 
 using Seconds = std::chrono::duration<double>;
 
+/// How many times longer than on an idle machine an event may take: 10, or ADIT_PATIENCE. The limits of the
+/// functions below and of the tests hold for an idle machine and are stretched by it, so that a verdict
+/// depends on what happens and not on what else the machine does. `./run test long` runs the live tests once
+/// more with 1.
+double patience();
+
 /// What a finished program left.
 struct Finished {
   int exit_code{-1};  ///< Negative: killed by that signal.
@@ -31,9 +37,10 @@ class Process {
   pid_t pid() const { return pid_; }
   bool running();
   void signal(int number);
-  /// Waits for the end; kills it after `limit` (exit_code is then -SIGKILL).
+  /// Waits for the end; kills it after `limit`, stretched (exit_code is then -SIGKILL).
   Finished wait(Seconds limit);
-  /// Reads its output until `text` has been seen on stdout or stderr; false after `limit` or at its end.
+  /// Reads its output until `text` has been seen on stdout or stderr; false after `limit`, stretched, or at
+  /// its end.
   bool wait_for_output(const std::string& text, Seconds limit);
   const std::string& out() const { return out_; }
   const std::string& err() const { return err_; }
@@ -53,8 +60,11 @@ class Process {
 Finished run(std::vector<std::string> arguments, std::map<std::string, std::string> environment = {},
              Seconds limit = Seconds(20));
 
-/// Asks again until `condition` holds; waits on a timer between two asks. False after `limit`.
+/// Asks again until `condition` holds; waits on a timer between two asks. False after `limit`, stretched.
 bool eventually(const std::function<bool()>& condition, Seconds limit = Seconds(10));
+
+/// Lets that much time pass.
+void pass(Seconds time);
 
 /// A folder that goes with the test, for sockets, identities and files.
 class Folder {

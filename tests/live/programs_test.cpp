@@ -41,7 +41,7 @@ TEST_F(Programs, KilledStationHasItsRobotsBackAtOnce) {
   const auto sent = op("op1", {"goto", "r1", "1", "0"});  // restarts the station
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - killed;
   EXPECT_EQ(sent.exit_code, 0) << sent.err;
-  EXPECT_LT(took.count(), 2.5);
+  EXPECT_LT(took.count(), 2.5 * patience());
   EXPECT_TRUE(listed("op1", "r1").value("mine", false));
   EXPECT_TRUE(listed("op1", "r1").value("locked", false));
 }

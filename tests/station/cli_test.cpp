@@ -44,13 +44,14 @@ class Cli : public testing::Test {
     const auto environment = folder_.environment();
     return environment.at("XDG_RUNTIME_DIR") + "/adit/" + name;
   }
-  /// What the station answers to raw bytes, until it says nothing more for a while.
-  std::string talk(const std::string& bytes) {
+  /// What the station answers to raw bytes, until `expected` is in it; without one, until it says nothing
+  /// more for a while.
+  std::string talk(const std::string& bytes, const std::string& expected = {}) {
     const int fd = ::socket(AF_UNIX, SOCK_STREAM, 0);
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     std::strncpy(address.sun_path, path("op1.sock").c_str(), sizeof address.sun_path - 1);
-    timeval limit{0, 400000};
+    const timeval limit = expected.empty() ? timeval{0, 400000} : timeval{20, 0};
     ::setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
     std::string out;
     if (::connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
@@ -60,7 +61,8 @@ class Cli : public testing::Test {
         at += static_cast<std::size_t>(sent);
       }
       char buffer[4096];
-      for (ssize_t size; (size = ::recv(fd, buffer, sizeof buffer, 0)) > 0;)
+      const auto answered = [&] { return !expected.empty() && out.find(expected) != std::string::npos; };
+      for (ssize_t size; !answered() && (size = ::recv(fd, buffer, sizeof buffer, 0)) > 0;)
         out.append(buffer, static_cast<std::size_t>(size));
     }
     ::close(fd);
@@ -192,7 +194,7 @@ TEST_F(Cli, AKilledStationIsReplacedAndKeepsItsIdentity) {
   std::string before, after;
   std::ifstream(identity_path) >> before;
   EXPECT_EQ(before.size(), 32U);
-  const json hello = json::parse(talk("{\"hello\":true}\n"));
+  const json hello = json::parse(talk("{\"hello\":true}\n", "\n"));
   ASSERT_EQ(::kill(hello["hello"]["pid"].get<int>(), SIGKILL), 0);
   EXPECT_EQ(::access(path("op1.sock").c_str(), F_OK), 0) << "its socket is left behind";
   EXPECT_TRUE(live::eventually([&] { return talk("{\"hello\":true}\n").empty(); }));
@@ -214,16 +216,16 @@ TEST_F(Cli, ADamagedIdentityIsToldAndNotReplaced) {
 
 TEST_F(Cli, TheSocketSurvivesGarbage) {
   run({"up"});
-  EXPECT_THAT(talk("garbage\n[1,2]\n{\"id\":\"x\"}\n{\"id\":1}\n"), HasSubstr("wrong"));
-  EXPECT_THAT(talk("{\"id\":1,\"stick\":[1,2]}\n"), HasSubstr("three numbers"));
-  EXPECT_THAT(talk("{\"id\":1,\"do\":5}\n{\"cancel\":\"x\"}\n"), HasSubstr("wrong"));
-  EXPECT_THAT(talk(std::string("\0\xff\xfe{}\n", 6)), HasSubstr("wrong"));
-  EXPECT_THAT(talk("{\"id\":7,\"teleop\":\"a b\"}\n"), HasSubstr("robot's name"));
-  EXPECT_THAT(talk("{\"id\":8,\"teleop\":\"r1\",\"do\":5}\n"), HasSubstr("begun"));
+  EXPECT_THAT(talk("garbage\n[1,2]\n{\"id\":\"x\"}\n{\"id\":1}\n", "wrong"), HasSubstr("wrong"));
+  EXPECT_THAT(talk("{\"id\":1,\"stick\":[1,2]}\n", "three numbers"), HasSubstr("three numbers"));
+  EXPECT_THAT(talk("{\"id\":1,\"do\":5}\n{\"cancel\":\"x\"}\n", "wrong"), HasSubstr("wrong"));
+  EXPECT_THAT(talk(std::string("\0\xff\xfe{}\n", 6), "wrong"), HasSubstr("wrong"));
+  EXPECT_THAT(talk("{\"id\":7,\"teleop\":\"a b\"}\n", "robot's name"), HasSubstr("robot's name"));
+  EXPECT_THAT(talk("{\"id\":8,\"teleop\":\"r1\",\"do\":5}\n", "begun"), HasSubstr("begun"));
   talk(std::string(1 << 20, 'x'));  // an endless line
   talk("{\"id\":1,\"do\":\"" + std::string(100000, '[') + "\"}\n");
   talk(std::string(100000, '[') + "\n");
-  EXPECT_THAT(talk("{\"id\":3,\"do\":\"list\"}\n"), HasSubstr("\"outcome\""));
+  EXPECT_THAT(talk("{\"id\":3,\"do\":\"list\"}\n", "\"outcome\""), HasSubstr("\"outcome\""));
   EXPECT_EQ(run({"list"}).exit_code, 0);
 }
 

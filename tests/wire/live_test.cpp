@@ -74,7 +74,7 @@ TEST(LiveWire, AKilledProcessDoesNotHoldUpAWriter) {
   const std::vector<std::uint8_t> sample{0, 1, 0, 0, 1, 2, 3, 4};
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(writer->write(sample).ok());
-  EXPECT_LT(std::chrono::steady_clock::now() - start, 2s);
+  EXPECT_LT(seconds(std::chrono::steady_clock::now() - start), 2.0 * live::patience());
 }
 
 TEST(LiveWire, MalformedSamplesOnEveryTopicAreCountedAndSurvived) {
@@ -187,10 +187,14 @@ TEST(LiveWire, LargeScansPassWhole) {
   net.pass(200ms);
   std::vector<std::uint8_t> scan(230'000);
   scan[1] = 1;
-  for (std::size_t i = 1; i <= 10; ++i) {
+  // One that comes while the receiver gets no processor time may find its socket full, and is lost.
+  for (int i = 0; i < 100 && seen.size() < 10; ++i) {
+    const std::size_t before = seen.size();
     ASSERT_TRUE(writer->write(scan).ok());
-    EXPECT_TRUE(net.until([&] { return seen.size() >= i; }, 1s));
+    net.until([&] { return seen.size() > before; }, 100ms);
   }
+  EXPECT_GE(seen.size(), 10U);
+  for (const std::size_t size : seen.all()) EXPECT_EQ(size, scan.size());
 }
 
 // The driver edge reads what others write on rt/cmd_vel, to notice a second master.
@@ -255,7 +259,7 @@ TEST(LiveWire, AHungReaderOfScansCostsNoMemory) {
     for (int i = 1; i <= 1000 && received() < enough; ++i) {
       ++scan[4];
       ASSERT_TRUE(writer->write(scan).ok());
-      net.until([&] { return received() >= enough; }, pause);
+      net.pass(pause);
     }
   };
   write_until(5);
