@@ -186,7 +186,8 @@ Result<const CommandInfo*> choose(const std::vector<const CommandInfo*>& found,
   }
   if (meant != nullptr) return meant;
   if (plain != nullptr) return plain;
-  return wrong(*found.front(), expected + " is missing");
+  const std::string name(found.front()->first_word());
+  return Error{Reason::bad_argument, name + ": " + expected + " is missing; try help " + name};
 }
 
 }  // namespace

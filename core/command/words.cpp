@@ -7,6 +7,7 @@ namespace adit::command {
 namespace {
 
 constexpr std::size_t kMaxLine = 4096;
+constexpr std::size_t kMaxEdits = 2;
 
 /// Optimal string alignment distance, for words up to the length of a command word.
 std::size_t distance(std::string_view a, std::string_view b) {
@@ -63,7 +64,8 @@ Result<std::vector<std::string>> split_words(std::string_view line) {
 std::string nearest(std::string_view typed, const std::vector<std::string>& candidates) {
   if (typed.empty() || typed.size() > 32) return {};
   std::string best;
-  std::size_t best_distance = std::min<std::size_t>(3, typed.size());  // Only fewer edits than this count.
+  // A third of a short word may be wrong: of "foo", two letters of three would lead to "goto".
+  std::size_t best_distance = std::min(kMaxEdits, typed.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     if (typed.size() >= 2 && candidate.starts_with(typed)) return candidate;
     const std::size_t d = distance(typed, candidate);

@@ -13,8 +13,9 @@ namespace adit::command {
 /// character, a line over 4096 bytes).
 Result<std::vector<std::string>> split_words(std::string_view line);
 
-/// Returns the candidate that `typed` most likely means: one that starts with it, or is at most two edits
-/// away (insertion, deletion, substitution, swap of neighbours). Empty when there is none.
+/// Returns the candidate that `typed` most likely means: one that starts with it, or is at most one edit away
+/// for each three letters typed, two at most (insertion, deletion, substitution, swap of neighbours). Empty
+/// when there is none.
 std::string nearest(std::string_view typed, const std::vector<std::string>& candidates);
 
 /// Whether a name may be sent over the radio: 1 to 32 of [A-Za-z0-9_-].

@@ -144,6 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Bad{"pose r1 1 2 7", Reason::out_of_range, "YAW is at most 6.3"},
                     Bad{"take \"r1", Reason::syntax, "not closed"}));
 
+                    Bad{"foo", Reason::unknown_command, "'foo'; try help"},
 TEST(Parse, MutatedLinesNeverHarm) {
   Random random(7);
   const std::string alphabet = "abr1 \"'\\-.0+e\t\x01\xff";
@@ -152,6 +153,8 @@ TEST(Parse, MutatedLinesNeverHarm) {
     const auto rows = table();
     std::string line(rows[random.below(rows.size())].example);
     for (std::uint64_t i = 0, n = random.below(4); i < n; ++i) {
+                    Bad{"map foo", Reason::bad_argument,
+                        "map: save or load or picture or status or forget is missing; try help map"},
       const std::size_t at = random.below(line.size() + 1);
       const char c = alphabet[random.below(alphabet.size())];
       if (random.chance(0.5) || at == line.size())

@@ -39,6 +39,9 @@ TEST(Words, NearestFindsTyposOnly) {
   EXPECT_EQ(nearest("relase", names), "release");
   EXPECT_EQ(nearest("stat", names), "status");
   EXPECT_EQ(nearest("photograph", names), "");
+  EXPECT_EQ(nearest("foo", {"goto", "home"}), "") << "two letters of three are no typing error";
+  EXPECT_EQ(nearest("lick", names), "lock");
+  EXPECT_EQ(nearest("lik", names), "");
   EXPECT_EQ(nearest("", names), "");
 }
 
