@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "basestation/findings/report.hpp"
+#include "basestation/fleet/all_robots.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/report/json.hpp"
 #include "basestation/report/table.hpp"
@@ -81,8 +82,9 @@ bool Station::Impl::complete() const {
 
 bool Station::Impl::must_wait(const Request& request) const {
   // A stop is never delayed: it is also sent to robots that were not heard yet.
-  if (request.verb != verb("stop") && !known(request) && fresh(params_.discovery_grace)) return true;
-  if (request.info->runs != Runs::query) return false;
+  if (request.verb == verb("stop")) return false;
+  if (!known(request) && fresh(params_.discovery_grace)) return true;
+  if (request.info->runs != Runs::query && !request.all) return false;
   // Just after the start the first results are incomplete, and an absent robot looks like a late one.
   return fresh(params_.settle) || (fresh(2 * params_.settle) && !complete());
 }
@@ -92,7 +94,8 @@ std::uint64_t Station::Impl::execute(const Request& request, Done done) {
   // A later command does not overtake commands that are queued for the same robot.
   const bool behind = request.verb != verb("stop") &&
                       std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {
-                        return std::find_first_of(earlier.request.robots.begin(),
+                        return earlier.request.all || request.all ||
+                               std::find_first_of(earlier.request.robots.begin(),
                                                   earlier.request.robots.end(), request.robots.begin(),
                                                   request.robots.end()) != earlier.request.robots.end();
                       });
@@ -112,6 +115,14 @@ std::uint64_t Station::Impl::refuse(const Error& error, const Done& done) {
 }
 
 void Station::Impl::run(std::uint64_t handle, const Request& request, Done done) {
+  if (request.all && request.robots.empty() && request.verb != verb("stop")) {
+    const auto named = with_robots_named(request, fleet_);
+    if (named) return run(handle, *named, std::move(done));
+    note({.command = std::string(request.info->name), .reason = named.reason(), .text = named.error().text});
+    Outcome outcome{.exit_code = 1, .error = named.error().text + "\n", .json = json_of(request, 1)};
+    outcome.json["reason"] = name(named.reason());
+    return done(outcome);
+  }
   if (request.info->runs == Runs::query) return answer_query(request, done);
   if (request.verb == verb("up")) {
     closed_ = false;
@@ -421,7 +432,7 @@ void Station::Impl::tick() {
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
   for (Waiting& next : std::exchange(waiting_, {})) {
     const bool behind = std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {
-      return earlier.request.robots == next.request.robots;
+      return earlier.request.all || next.request.all || earlier.request.robots == next.request.robots;
     });
     if (behind || must_wait(next.request))
       waiting_.push_back(std::move(next));

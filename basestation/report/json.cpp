@@ -104,7 +104,7 @@ json info_json(const Action& action) {
   const command::Argument& robots = info.arguments[0];
   return {{"arguments", arguments},           {"options", options},
           {"danger", to_string(info.danger)}, {"robots_min", robots.min_count},
-          {"robots_max", robots.max_count},   {"all_robots", robots.all},
+          {"robots_max", robots.max_count},   {"all_robots", robots.all != command::AllRobots::refused},
           {"usage", command::usage(info)}};
 }
 

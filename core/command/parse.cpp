@@ -48,7 +48,6 @@ class Reader {
   Result<Request> run() {
     request_.info = &row_;
     if (auto done = take_options(); !done) return done.error();
-    if (names_all()) return std::move(request_);
     std::size_t argument = 0, word = 0;
     for (std::size_t i = 0; i < row_.arguments.size(); ++i) {
       if (row_.arguments[i].type != Type::keyword) continue;
@@ -61,6 +60,7 @@ class Reader {
       word = at + 1;
     }
     if (auto done = assign(argument, row_.arguments.size(), word, words_.size()); !done) return done.error();
+    if (auto done = check_all(); !done) return done.error();
     for (ArgumentValue& option : options_) request_.values.push_back(std::move(option));
     return std::move(request_);
   }
@@ -97,12 +97,6 @@ class Reader {
     return {};
   }
 
-  /// `stop all`: robot names beside `all` change nothing.
-  bool names_all() {
-    request_.all = row_.arguments[0].all && std::find(words_.begin(), words_.end(), "all") != words_.end();
-    return request_.all;
-  }
-
   /// Assigns the words [from, to) to the arguments [begin, end); the optional arguments take the words that
   /// are left.
   Result<void> assign(std::size_t begin, std::size_t end, std::size_t from, std::size_t to) {
@@ -127,16 +121,36 @@ class Reader {
           std::min(spare, (std::size_t{argument.max_count} - argument.min_count) * argument.group) /
           argument.group;
       spare -= extra * argument.group;
+      const std::size_t count = (argument.min_count + extra) * argument.group;
+      const auto begin_of = words_.begin() + static_cast<std::ptrdiff_t>(from);
+      const auto end_of = begin_of + static_cast<std::ptrdiff_t>(count);
+      if (argument.all != AllRobots::refused && std::find(begin_of, end_of, "all") != end_of) {
+        request_.all = true;  // Robot names beside it change nothing.
+        from += count;
+        continue;
+      }
       ArgumentValue value{argument.name, {}, {}};
-      for (std::size_t n = (argument.min_count + extra) * argument.group; n > 0; --n)
+      for (std::size_t n = count; n > 0; --n)
         if (auto done = put(value, argument, words_[from++]); !done) return done;
       if (!value.words.empty() || !value.numbers.empty()) request_.values.push_back(std::move(value));
     }
     return spare > 0 ? Result<void>(wrong(row_, "its numbers come in pairs")) : Result<void>();
   }
 
+  /// Refuses `all` where it would move robots.
+  Result<void> check_all() const {
+    const std::string_view only = row_.arguments[0].all_only;
+    if (!request_.all || only.empty() || request_.values.back().words.back() == only) return {};
+    return wrong(row_, "all goes with " + std::string(only) + " only; name the robots");
+  }
+
   Result<void> put(ArgumentValue& value, const Argument& argument, const std::string& word) {
     if (argument.type == Type::robots) {
+      if (word == "all")
+        return wrong(row_,
+                     std::string("it does not take all: ") + (argument.min_count == 0  ? "leave it out"
+                                                              : argument.max_count > 1 ? "name each robot"
+                                                                                       : "name one robot"));
       if (auto checked = check_word(row_, argument, word); !checked) return checked;
       auto& robots = request_.robots;
       if (argument.distinct && std::find(robots.begin(), robots.end(), word) != robots.end())

@@ -23,6 +23,14 @@ enum class Type : std::uint8_t {
   keyword,  ///< The word `name` itself; it distinguishes commands with the same first word.
 };
 
+/// The robots that the word `all`, typed in place of their names, means.
+enum class AllRobots : std::uint8_t {
+  refused,  ///< None: robots are named one by one, because the command moves them.
+  heard,    ///< Every robot that is heard.
+  unheld,   ///< Every robot that is heard and that no operator holds.
+  held,     ///< Every robot that this operator holds.
+};
+
 /// One argument of a command, or a value of an option.
 struct Argument {
   std::string_view name{};  ///< Name as in the usage: "X", "COMPONENT"; of a keyword the word itself.
@@ -39,7 +47,8 @@ struct Argument {
   std::uint8_t min_count{1}, max_count{1};  ///< Number of values; 0 and 1: optional.
   std::uint8_t group{1};                    ///< Numbers that belong together: 2 for points X Y.
   bool distinct{false};                     ///< For robots: a name typed twice is an error.
-  bool all{false};                          ///< For robots: the word `all` means every robot that is heard.
+  AllRobots all{AllRobots::refused};        ///< For robots.
+  std::string_view all_only{};  ///< Last word that `all` requires: with others the command moves robots.
 
   constexpr explicit operator bool() const { return type != Type::none; }
 };
@@ -47,6 +56,7 @@ struct Argument {
 /// An option: --name and its values, if any.
 struct Option {
   std::string_view name{};
+  std::string_view summary{};  ///< Its effect; unit, range and preset are not repeated here.
   std::array<Argument, 2> values{};
   double preset{std::numeric_limits<double>::quiet_NaN()};  ///< Number used when the option is not given.
   bool local{false};        ///< Concerns only the station and is not sent to the robot.

@@ -2,13 +2,17 @@
 #include "core/command/vocabulary.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/command/words.hpp"
 
 namespace adit::command {
 namespace {
 
 // The usage names longer lists of choices without spelling them out.
 constexpr std::size_t kShortChoices = 24;
-constexpr std::size_t kHelpColumn = 30;
+constexpr std::size_t kHelpColumn = 30, kArgumentColumn = 18;
 
 bool typed(const CommandInfo& row) { return row.runs != Runs::nobody; }
 
@@ -28,8 +32,58 @@ std::string usage(const Argument& argument) {
     return text;
   }
   if (argument.max_count > 1) text += "...";
-  if (argument.all) text += "|all";
+  if (argument.all != AllRobots::refused) text += "|all";
   return argument.min_count == 0 ? "[" + text + "]" : text;
+}
+
+std::string usage(const Option& option) {
+  std::string text(option.name);
+  for (const Argument& value : option.values)
+    if (value) text += " " + usage(value);
+  return text;
+}
+
+std::string short_number(double number) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.10g", number);
+  return buffer;
+}
+
+std::string_view meaning(AllRobots all) {
+  switch (all) {
+    case AllRobots::heard:
+      return "every robot that is heard";
+    case AllRobots::unheld:
+      return "every robot that is heard and has no holder";
+    case AllRobots::held:
+      return "every robot that you hold";
+    case AllRobots::refused:
+      break;
+  }
+  return {};
+}
+
+/// Describes the values of an argument: "m, -10000 to 10000", "a component: agent, command".
+std::string values_of(const Argument& argument) {
+  std::string text(argument.type == Type::choice ? "" : argument.what);
+  if (!argument.unit.empty()) text += (text.empty() ? "" : ", ") + std::string(argument.unit);
+  if (std::isfinite(argument.minimum))
+    text += (text.empty() ? "" : ", ") + std::string(argument.above ? "above " : "") +
+            short_number(argument.minimum) + " to " + short_number(argument.maximum);
+  if (!argument.choices.empty()) text += (text.empty() ? "" : ": ") + joined(choices(argument), "");
+  if (!argument.unlimited.empty()) text += " or " + std::string(argument.unlimited);
+  if (argument.type == Type::robots && argument.max_count > 1) text += ", or several";
+  if (argument.all != AllRobots::refused) text += "; all: " + std::string(meaning(argument.all));
+  if (!argument.all_only.empty()) text += ", with " + std::string(argument.all_only) + " only";
+  return text;
+}
+
+std::string values_of(const Option& option) {
+  std::string text(option.summary);
+  if (option.values[0].type != Type::number) return text;
+  text += " (" + values_of(option.values[0]);
+  if (std::isfinite(option.preset)) text += "; default " + short_number(option.preset);
+  return text + ")";
 }
 
 /// Returns the keyword of a row, or null when it has none.
@@ -46,7 +100,7 @@ void propose(const Argument& argument, const std::vector<std::string>& robots, T
                                                                            : choices(argument);
   out.insert(out.end(), listed.begin(), listed.end());
   if (argument.type == Type::keyword) out.emplace_back(argument.name);
-  if (argument.all) out.emplace_back("all");
+  if (argument.all != AllRobots::refused) out.emplace_back("all");
   if (!argument.unlimited.empty()) out.emplace_back(argument.unlimited);
 }
 
@@ -86,6 +140,10 @@ std::vector<std::string> complete(const CommandInfo& row, const std::vector<std:
     i += (*option)->count();
     left.erase(option);
   }
+  // With `all`, some commands take one word only.
+  const std::string_view only = row.arguments[0].all_only;
+  if (!only.empty() && std::find(given.begin(), given.end(), "all") != given.end())
+    return given.back() == "all" ? std::vector{std::string(only)} : std::vector<std::string>{};
   std::size_t begin = 0, end = row.arguments.size(), at = given.size();
   if (const Argument* keyword = keyword_of(row)) {
     const auto place = static_cast<std::size_t>(keyword - row.arguments.data());
@@ -138,19 +196,23 @@ std::string usage(const CommandInfo& command) {
   std::string text(command.first_word());
   for (const Argument& argument : command.arguments)
     if (argument) text += " " + usage(argument);
-  for (const Option& option : command.options) {
-    if (!option) continue;
-    text += " [" + std::string(option.name);
-    for (const Argument& value : option.values)
-      if (value) text += " " + usage(value);
-    text += "]";
-  }
+  for (const Option& option : command.options)
+    if (option) text += " [" + usage(option) + "]";
   return text;
 }
 
 std::string help(const CommandInfo& command) {
-  return "usage: basestation " + usage(command) + "\n\n  " + std::string(command.summary) +
-         "\n\nexample: basestation " + std::string(command.example) + "\n";
+  std::string rows;
+  const auto add = [&](std::string left, const std::string& text) {
+    left.resize(std::max(left.size() + 2, kArgumentColumn), ' ');
+    rows += "  " + left + text + "\n";
+  };
+  for (const Argument& argument : command.arguments)
+    if (argument && argument.type != Type::keyword) add(std::string(argument.name), values_of(argument));
+  for (const Option& option : command.options)
+    if (option) add(usage(option), values_of(option));
+  return "usage: basestation " + usage(command) + "\n\n  " + std::string(command.summary) + "\n" +
+         (rows.empty() ? "" : "\n" + rows) + "\nexample: basestation " + std::string(command.example) + "\n";
 }
 
 std::string help_all(Table rows) {

@@ -42,7 +42,7 @@ std::vector<std::string> choices(const Argument& argument);
 
 /// Shows how a command is typed: "goto R X Y [Z] [--wait]".
 std::string usage(const CommandInfo& command);
-/// Help text of one command: usage, effect and an example.
+/// Help text of one command: usage, effect, each argument and option with unit, range and preset, an example.
 std::string help(const CommandInfo& command);
 /// Help text with one line for each command.
 std::string help_all(Table rows = table());

@@ -24,13 +24,22 @@ TEST(Complete, CommandsThenRobotsThenArguments) {
   EXPECT_THAT(complete({"stop", ""}, kRobots), ElementsAre("r1", "r2", "all"));
   EXPECT_THAT(complete({"mode", "r1", ""}, kRobots), Contains("waypoint"));
   EXPECT_THAT(complete({"mode", "r1", ""}, kRobots), Contains("r2"));
-  EXPECT_THAT(complete({"mode", ""}, kRobots), ElementsAre("r1", "r2"));
+  EXPECT_THAT(complete({"mode", ""}, kRobots), ElementsAre("r1", "r2", "all"));
   EXPECT_THAT(complete({"policy", "r1", ""}, kRobots), ElementsAre("planner", "router", "sensors", "map"));
   EXPECT_THAT(complete({"policy", "r1", "planner", ""}, kRobots), ElementsAre("auto", "manual"));
   EXPECT_THAT(complete({"help", ""}, kRobots), Contains("goto"));
   EXPECT_THAT(complete({"completion", ""}, kRobots), ElementsAre("bash", "zsh", "fish"));
   EXPECT_THAT(complete({"list", ""}, kRobots), IsEmpty());
   EXPECT_THAT(complete({"nothing", ""}, kRobots), IsEmpty());
+}
+
+TEST(Complete, AllWhereTheCommandMovesNoRobot) {
+  EXPECT_THAT(complete({"reset", ""}, kRobots), ElementsAre("r1", "r2", "all"));
+  EXPECT_THAT(complete({"reset", "all", ""}, kRobots), Contains("--override"));
+  EXPECT_THAT(complete({"mode", "all", ""}, kRobots), ElementsAre("hold"));
+  EXPECT_THAT(complete({"yield", "all", ""}, kRobots), ElementsAre("off"));
+  EXPECT_THAT(complete({"mode", "all", "hold", ""}, kRobots), IsEmpty());
+  EXPECT_THAT(complete({"explore", ""}, kRobots), Not(Contains("all")));
 }
 
 TEST(Complete, OptionsOnceTheArgumentsAreThere) {

@@ -28,6 +28,7 @@ TEST(CommandTable, NamesAndNumbersAreUnique) {
     EXPECT_FALSE(row.summary.empty()) << row.name;
     EXPECT_FALSE(row.example.empty()) << row.name;
     EXPECT_TRUE(row.number < 0 || !row.done.empty()) << row.name;
+    for (const Option& option : row.options) EXPECT_EQ(option.summary.empty(), !option) << row.name;
   }
 }
 

@@ -104,6 +104,26 @@ TEST_F(ExecuteTest, StopAllReachesEveryRobot) {
   EXPECT_TRUE(robots_[1]->behaviour.stopped());
 }
 
+TEST_F(ExecuteTest, AllMeansWhatTheOperatorHoldsAndForTakeWhatIsFree) {
+  const Outcome none = execute("reset all");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_EQ(none.error, "you hold no robot\n");
+  EXPECT_EQ(none.json["reason"], "not_holder");
+  robots_[1]->holder = "op2";
+  robots_[1]->publish();
+  run_for(1s);
+  EXPECT_EQ(execute("take all").text, "r1: taken\n") << "never from another operator";
+  EXPECT_EQ(robots_[1]->holder, "op2");
+  EXPECT_THAT(execute("take all").error, HasSubstr("every robot has a holder"));
+  for (const char* line : {"lock all", "mode all hold", "reset all --override", "yield all off"}) {
+    const Outcome outcome = execute(line);
+    EXPECT_EQ(outcome.exit_code, 0) << line << ": " << outcome.error;
+    EXPECT_THAT(outcome.text, HasSubstr("r1: ")) << line;
+    EXPECT_THAT(outcome.text, testing::Not(HasSubstr("r2"))) << line;
+  }
+  EXPECT_THAT(execute("actions all").json["actions"].dump(), HasSubstr("r2")) << "of every robot";
+}
+
 TEST_F(ExecuteTest, QueriesShowTheFleet) {
   execute("take r1");
   run_for(1500ms);
