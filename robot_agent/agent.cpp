@@ -8,6 +8,7 @@
 #include "nav/control/controller.hpp"
 #include "nav/planners/make_planner.hpp"
 #include "robot_agent/agent_impl.hpp"
+#include "robot_agent/common/console_answer.hpp"
 
 namespace adit::agent {
 namespace {
@@ -60,11 +61,11 @@ void Agent::at_console(const std::string& line, std::function<void(const std::st
   if (verb == "restart" || (verb == "policy" && (policy == "auto" || policy == "manual"))) {
     const auto done = verb == "restart" ? impl_->watch->restart(component)
                                         : impl_->watch->set_policy(component, policy == "auto");
-    return answer(done ? "done\n" : done.error().text + "\n");
+    return answer(done ? "done\n" : refused_at_console(done.error().text));
   }
   impl_->command_strand().post([context = impl_->context.get(), line, answer = std::move(answer)] {
     answer(context->command_component ? context->command_component->at_console(line)
-                                      : "the command component is being restarted\n");
+                                      : refused_at_console("the command component is being restarted"));
   });
 }
 

@@ -86,7 +86,8 @@ class Agent {
   Result<void> start();
 
   /// Executes a line of the robot's own console: "status", "unlock", "peers", "health", "restart COMPONENT",
-  /// "policy COMPONENT auto|manual". `answer` runs on a strand of the agent, or never if that strand hangs.
+  /// "policy COMPONENT auto|manual". The answer to a line that is not executed starts with kConsoleRefusal.
+  /// `answer` runs on a strand of the agent, or never if that strand hangs.
   /// Callable from any thread, after start().
   void at_console(const std::string& line, std::function<void(const std::string&)> answer);
 

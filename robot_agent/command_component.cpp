@@ -6,6 +6,7 @@
 
 #include "core/time/random.hpp"
 #include "robot_agent/behaviour/modes/external.hpp"
+#include "robot_agent/common/console_answer.hpp"
 
 namespace adit::agent {
 namespace {
@@ -481,8 +482,9 @@ std::string Agent::CommandComponent::at_console(const std::string& line) {
   if (line == "unlock") return commands_.unlock_at_console() ? "unlocked\n" : "there was no lock\n";
   if (line == "peers") return describe(context_.peers, now());
   if (line != "status")
-    return "unknown: " + line +
-           " (status, unlock, peers, health, restart COMPONENT, policy COMPONENT auto|manual)\n";
+    return refused_at_console("'" + line +
+                              "' is no command of the console (status, unlock, peers, health, restart "
+                              "COMPONENT, policy COMPONENT auto|manual)");
   const Authority& authority = commands_.authority();
   const BehaviourView view = behaviour_.view();
   return params_.name + ": " +

@@ -2,6 +2,7 @@
 #include "basestation/model/json_reports.hpp"
 
 #include "basestation/model/exit_code.hpp"
+#include "core/command/vocabulary.hpp"
 
 namespace adit::station {
 
@@ -62,6 +63,7 @@ json json_of(const ComponentView& component) {
           {"state", word(component.phase)},
           {"healthy", component.healthy},
           {"policy", component.automatic ? "auto" : "manual"},
+          {"can_restart", command::is_component(component.name)},
           {"silent_for", component.silent_for},
           {"restarts", component.restarts},
           {"hung", component.hung},

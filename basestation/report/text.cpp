@@ -6,6 +6,7 @@
 
 #include "basestation/model/route.hpp"
 #include "basestation/report/table.hpp"
+#include "core/command/vocabulary.hpp"
 #include "core/command/words.hpp"
 
 namespace adit::station {
@@ -205,15 +206,21 @@ std::string net_text(const Fleet& fleet, Time now, const std::string& link, doub
 std::string health_text(const std::vector<const RobotView*>& robots) {
   std::vector<std::vector<std::string>> rows{
       {"ROBOT", "COMPONENT", "STATE", "POLICY", "SILENT S", "RESTARTS", "HUNG", "REMARK"}};
-  std::string silent;
+  std::string silent, note;
   for (const RobotView* robot : robots) {
     if (robot->components.empty()) silent += robot->name + ": no health report has been heard\n";
-    for (const ComponentView& part : robot->components)
-      rows.push_back({robot->name, part.name, word(part.phase), part.automatic ? "auto" : "manual",
+    for (const ComponentView& part : robot->components) {
+      const bool component = command::is_component(part.name);
+      if (!component) note = "POLICY -: no component of the agent; restart and policy do not take it\n";
+      rows.push_back({robot->name, part.name, word(part.phase),
+                      !component       ? "-"
+                      : part.automatic ? "auto"
+                                       : "manual",
                       fixed(part.silent_for, 1), std::to_string(part.restarts), std::to_string(part.hung),
                       part.text});
+    }
   }
-  return (rows.size() == 1 ? "" : table(rows)) + silent;
+  return (rows.size() == 1 ? "" : table(rows)) + note + silent;
 }
 
 std::string actions_text(const std::vector<Action>& actions) {

@@ -192,6 +192,11 @@ std::vector<std::string> choices(const Argument& argument) {
   return out;
 }
 
+bool is_component(std::string_view part) {
+  const std::vector<std::string> parts = choices(info(verb("restart")).arguments[1]);
+  return std::find(parts.begin(), parts.end(), part) != parts.end();
+}
+
 std::string usage(const CommandInfo& command) {
   std::string text(command.first_word());
   for (const Argument& argument : command.arguments)

@@ -40,6 +40,9 @@ std::vector<std::string> command_names(Table rows = table());
 /// Splits the choices of an argument.
 std::vector<std::string> choices(const Argument& argument);
 
+/// Whether `restart` takes this part of a robot's health report: driver and store are no components.
+bool is_component(std::string_view part);
+
 /// Shows how a command is typed: "goto R X Y [Z] [--wait]".
 std::string usage(const CommandInfo& command);
 /// Help text of one command: usage, effect, each argument and option with unit, range and preset, an example.

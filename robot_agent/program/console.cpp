@@ -15,7 +15,11 @@
 #include <cstring>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <thread>
+#include <utility>
+
+#include "robot_agent/common/console_answer.hpp"
 
 namespace adit::agent {
 namespace {
@@ -137,7 +141,7 @@ struct Console::Server {
     std::unique_lock lock(waiting->mutex);
     waiting->come.wait_for(lock, std::chrono::milliseconds(kPatience),
                            [&] { return waiting->text.has_value(); });
-    write_all(client, waiting->text.value_or("the agent does not answer\n"));
+    if (waiting->text) write_all(client, *waiting->text);
   }
 };
 
@@ -175,6 +179,17 @@ Console::~Console() {
   ::unlink(server_->path.c_str());
 }
 
+Result<void> check_console_line(const std::vector<std::string>& words) {
+  static constexpr std::pair<std::string_view, std::size_t> kCommands[] = {
+      {"status", 1}, {"unlock", 1}, {"peers", 1}, {"health", 1}, {"restart", 2}, {"policy", 3}, {"fault", 3}};
+  for (const auto& [name, count] : kCommands)
+    if (words.front() == name && words.size() == count &&
+        (name != "policy" || words[2] == "auto" || words[2] == "manual"))
+      return {};
+  return {Reason::bad_argument,
+          "console takes status, unlock, peers, health, restart COMPONENT or policy COMPONENT auto|manual"};
+}
+
 Result<std::string> ask_console(const std::string& robot, const std::string& line) {
   const auto path = socket_path(robot);
   if (!path) return path.error();
@@ -192,7 +207,9 @@ Result<std::string> ask_console(const std::string& robot, const std::string& lin
     answer.append(buffer, static_cast<std::size_t>(got));
   }
   if (answer.empty()) return Error{Reason::no_answer, robot + " does not answer"};
-  return answer;
+  if (!answer.starts_with(kConsoleRefusal)) return answer;
+  answer.pop_back();
+  return Error{Reason::not_supported, robot + " " + answer};
 }
 
 }  // namespace adit::agent

@@ -21,6 +21,7 @@
 #include "core/store/file_disk.hpp"
 #include "core/wire/link_file.hpp"
 #include "robot_agent/agent.hpp"
+#include "robot_agent/common/console_answer.hpp"
 #include "robot_agent/program/check.hpp"
 #include "robot_agent/program/console.hpp"
 #include "robot_agent/program/memory_limit.hpp"
@@ -47,7 +48,7 @@ Examples:
   robot_agent console restart planner --name r1          make a component anew
 
 Exit status: 0 ended by a signal, 1 failed, 2 wrong usage or configuration. Of `check`: 0 all is OK, 1 something is
-wrong.)";
+wrong. Of `console`: 0 done, 1 refused, 2 wrong usage, 3 no answer.)";
 
 constexpr const char* kCheckFooter = R"(
 It listens to the drivers and sends nothing. Let the robot stand on level ground for 10 s, then turn it on the spot by
@@ -139,9 +140,9 @@ std::string inject(agent::Agent& agent, const std::string& line) {
   std::istringstream words(line);
   std::string verb, fault, component;
   words >> verb >> fault >> component;
-  if (fault != "crash" && fault != "hang") return "fault crash|hang COMPONENT\n";
+  if (fault != "crash" && fault != "hang") return refused_at_console("fault crash|hang COMPONENT");
   const auto done = agent.inject(component, fault == "hang" ? ComponentFault::hang : ComponentFault::crash);
-  return done ? "done\n" : done.error().text + "\n";
+  return done ? "done\n" : refused_at_console(done.error().text);
 }
 
 /// Sets the memory limit once all components exist; a limit that is too low is a configuration error.
@@ -203,7 +204,7 @@ int run_agent(const RobotConfig& config, const Options& options) {
   const bool faults = options.allow_faults;
   auto console = Console::open(config.name, [&agent, &up, faults](const std::string& line, auto answer) {
     if (!up)
-      answer("starting\n");
+      answer(refused_at_console("it is starting"));
     else if (faults && line.starts_with("fault "))
       answer(inject(agent, line));
     else
@@ -251,9 +252,10 @@ std::string joined(const std::vector<std::string>& words) {
   return line;
 }
 
-int ask(const std::string& name, const std::string& line) {
-  const auto answer = ask_console(name, line);
-  if (!answer) return fail(answer.error(), 3);
+int ask(const std::string& name, const std::vector<std::string>& words) {
+  if (const auto checked = check_console_line(words); !checked) return fail(checked.error(), 2);
+  const auto answer = ask_console(name, joined(words));
+  if (!answer) return fail(answer.error(), answer.reason() == Reason::no_answer ? 3 : 1);
   std::cout << *answer;
   return 0;
 }
@@ -314,7 +316,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return config::end_usage(app, error);
   }
-  if (*console) return ask(robot, joined(words));
+  if (*console) return ask(robot, words);
   if (options.config.empty()) return fail({Reason::bad_argument, "--config FILE is missing; see --help"}, 2);
   const auto config = load(options);
   if (!config) return fail(config.error(), 2);

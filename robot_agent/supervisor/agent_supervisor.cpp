@@ -68,10 +68,11 @@ class AgentSupervisor::Impl {
         std::find_if(specs_.begin(), specs_.end(), [&](const PartSpec& s) { return s.name == part; });
     return found == specs_.end() ? nullptr : &*found;
   }
-  Error unknown(const std::string& part) const {
-    std::string names = kAgent;
-    for (const PartSpec& spec : specs_) names += ", " + spec.name;
-    return {Reason::bad_argument, "no component is named " + part + " (" + names + ")"};
+  /// `verb`: "restart" also takes the agent. Driver and store have rows in the health report, too.
+  Error unknown(const std::string& verb, const std::string& part) const {
+    std::string names = verb == "restart" ? kAgent : "";
+    for (const PartSpec& spec : specs_) names += (names.empty() ? "" : ", ") + spec.name;
+    return {Reason::bad_argument, part + " is no component of the agent; " + verb + " takes " + names};
   }
 
   void note(ComponentRow row) {
@@ -197,7 +198,7 @@ Result<void> AgentSupervisor::restart(const std::string& component) {
     });
     return {};
   }
-  if (!impl_->find(component)) return impl_->unknown(component);
+  if (!impl_->find(component)) return impl_->unknown("restart", component);
   impl_->strand().post_control([impl = impl_.get(), component] {
     (void)impl->supervisor().restart(component);
     impl->touched();
@@ -207,7 +208,7 @@ Result<void> AgentSupervisor::restart(const std::string& component) {
 
 Result<void> AgentSupervisor::set_policy(const std::string& component, bool automatic) {
   const PartSpec* spec = impl_->find(component);
-  if (!spec) return impl_->unknown(component);
+  if (!spec) return impl_->unknown("policy", component);
   if (spec->always && !automatic)
     return {Reason::not_supported, component + " takes the operators' word itself: it is always restarted"};
   impl_->strand().post_control([impl = impl_.get(), component, automatic] {
@@ -224,8 +225,12 @@ void AgentSupervisor::describe(std::function<void(const std::string&)> answer) {
     for (const ComponentRow& row : impl->rows()) {
       char line[320];
       std::snprintf(line, sizeof line, "%-10s %-9s %-5s restarts %u, hung %u, silent %.1f s%s%s\n",
-                    row.name.c_str(), word(row.state).data(), row.automatic ? "auto" : "manual", row.restarts,
-                    row.hung, seconds(row.silent), row.text.empty() ? "" : ": ", row.text.c_str());
+                    row.name.c_str(), word(row.state).data(),
+                    !impl->find(row.name) ? "-"
+                    : row.automatic       ? "auto"
+                                          : "manual",
+                    row.restarts, row.hung, seconds(row.silent), row.text.empty() ? "" : ": ",
+                    row.text.c_str());
       text += line;
     }
     answer(text);

@@ -162,6 +162,20 @@ TEST_F(ConsoleTest, LineInAnswerOut) {
   EXPECT_EQ(*answer, "got unlock\n");
 }
 
+TEST_F(ConsoleTest, ARefusalIsAnErrorAndSoIsNoAnswer) {
+  auto console = Console::open("r1", [](const std::string& line, auto answer) {
+    if (line != "health") answer("refused: store is no component of the agent\n");
+  });
+  ASSERT_TRUE(console) << console.error().text;
+  const auto refused = ask_console("r1", "restart store");
+  ASSERT_FALSE(refused) << *refused;
+  EXPECT_EQ(refused.error().text, "r1 refused: store is no component of the agent");
+  EXPECT_NE(refused.reason(), Reason::no_answer);
+  const auto silent = ask_console("r1", "health");
+  ASSERT_FALSE(silent) << *silent;
+  EXPECT_EQ(silent.reason(), Reason::no_answer);
+}
+
 TEST_F(ConsoleTest, OneAgentPerName) {
   const auto first = Console::open("r1", [](const auto&, auto) {});
   ASSERT_TRUE(first);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include "core/command/vocabulary.hpp"
 #include "geometry_msgs/msg/TwistStamped.h"
 #include "tests/agent/agent_bench.hpp"
 
@@ -182,6 +183,32 @@ TEST_F(SupervisionTest, AHungCommandStrandIsSeenFromOutsideAndEndsTheAgent) {
   const int was_alive = alive;
   bench.run(1s);
   EXPECT_EQ(alive, was_alive);  // the watchdog is not fed
+}
+
+// The station marks driver and store in its listing by the same rule.
+TEST_F(SupervisionTest, RestartTakesTheComponentsOfTheHealthReportAndSaysWhyNotTheOthers) {
+  std::string answer;
+  const auto ask = [&](const std::string& line) {
+    answer.clear();
+    bench.agent().at_console(line, [&](const std::string& text) { answer = text; });
+    bench.run(10ms);
+    return answer;
+  };
+  ask("health");
+  EXPECT_THAT(answer, testing::ContainsRegex("planner +up +auto"));
+  EXPECT_THAT(answer, testing::ContainsRegex("driver +up +- "));
+  std::size_t refused = 0;
+  for (const auto& part : op->health.components()) {
+    const bool taken = ask("policy " + part.name() + " auto") == "done\n";
+    EXPECT_EQ(taken, command::is_component(part.name())) << part.name();
+    if (taken) continue;
+    ++refused;
+    EXPECT_THAT(ask("restart " + part.name()),
+                testing::StartsWith("refused: " + part.name() +
+                                    " is no component of the agent; restart takes agent, command, planner"));
+  }
+  EXPECT_GT(refused, 0U);
+  EXPECT_THAT(ask("policy agent auto"), testing::Not(testing::HasSubstr("takes agent")));
 }
 
 TEST(Health, ADriverThatWasNeverPresentHasNotFailed) {

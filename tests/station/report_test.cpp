@@ -156,6 +156,24 @@ TEST(Report, HealthOfSeveralRobotsIsOneTable) {
   EXPECT_THAT(text, HasSubstr("r3: no health report has been heard\n"));
 }
 
+TEST(Report, HealthMarksWhatCannotBeRestarted) {
+  RobotView robot;
+  robot.name = "r1";
+  const auto part = [](const char* name) {
+    return ComponentView{.name = name, .phase = ComponentPhase::up, .automatic = true, .text = {}};
+  };
+  robot.components = {part("planner")};
+  EXPECT_THAT(health_text({&robot}), testing::Not(HasSubstr("no component")));
+  robot.components = {part("planner"), part("driver"), part("store")};
+  const std::string text = health_text({&robot});
+  EXPECT_THAT(text, testing::ContainsRegex("planner +up +auto"));
+  EXPECT_THAT(text, testing::ContainsRegex("driver +up +- "));
+  EXPECT_THAT(text, testing::ContainsRegex("store +up +- "));
+  EXPECT_THAT(text, HasSubstr("no component of the agent; restart and policy do not take it"));
+  EXPECT_EQ(health_json(robot)["components"][0]["can_restart"], true);
+  EXPECT_EQ(health_json(robot)["components"][2]["can_restart"], false);
+}
+
 TEST(Report, AmountsThatARobotCannotMeanAreNotKnown) {
   Fleet fleet("op1", {1});
   radio::Capabilities sample = described();
