@@ -44,6 +44,9 @@ class Play {
       Player& owner = players_[name];
       const auto found = owner.open.find(id);
       if (found == owner.open.end()) return;
+      ++ended_;
+      if (outcome.exit_code == kExitNoAnswer) ++unanswered_;
+      if (outcome.exit_code != kExitDone && outcome.exit_code != kExitNoAnswer) ++refused_;
       event(name, found->second, &outcome);
       owner.open.erase(found);
     };
@@ -69,6 +72,14 @@ class Play {
   bool idle() const {
     return std::all_of(players_.begin(), players_.end(), [](const auto& p) { return p.second.open.empty(); });
   }
+  /// Says how many commands failed, and returns the exit code.
+  int result() const {
+    if (refused_ + unanswered_ == 0) return kExitDone;
+    if (!options_.json)
+      std::fprintf(stderr, "of %zu commands %zu were refused, and %zu had no answer\n", ended_, refused_,
+                   unanswered_);
+    return refused_ > 0 ? kExitRefused : kExitNoAnswer;
+  }
   void cancel() {
     for (auto& [name, player] : players_)
       for (const auto& [id, line] : player.open) player.client->cancel(id);
@@ -92,6 +103,7 @@ class Play {
 
   Options options_;
   std::map<std::string, Player> players_{};
+  std::size_t ended_{}, refused_{}, unanswered_{};
   std::chrono::steady_clock::time_point started_;
 };
 
@@ -125,11 +137,10 @@ int play(const Options& options, const std::vector<ScriptLine>& script, bool all
     mine.push_back(line);
     names.insert(line.by);
   }
-  if (mine.empty()) {
-    std::fprintf(stderr, "the script has no lines by %s; all operators' are played with --all\n",
-                 options.name.c_str());
-    return kExitDone;
-  }
+  if (mine.empty())
+    return fail(options, kExitUsage,
+                {Reason::bad_argument,
+                 "the script has no lines by " + options.name + "; all operators' are played with --all"});
   Play play(options);
   for (const std::string& name : names)
     if (auto added = play.add(name); !added)
@@ -145,7 +156,7 @@ int play(const Options& options, const std::vector<ScriptLine>& script, bool all
       return 130;
     }
   }
-  return kExitDone;
+  return play.result();
 }
 
 }  // namespace adit::station::cli

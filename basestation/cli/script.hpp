@@ -21,7 +21,8 @@ struct ScriptLine {
 Result<std::vector<ScriptLine>> read_script(const std::string& path);
 
 /// Plays a script on the real clock: the lines of options.name, or of every operator at the operator's own
-/// station. A refusal is an event, not a failure. Returns 0 at the end, 3 if the connection to a station was
+/// station. A refused command does not end the play. Returns 0 at the end, 1 if a command was refused, 2 if
+/// the script has no line of that operator, 3 if a command had no answer or the connection to a station was
 /// lost, 130 if interrupted.
 int play(const Options& options, const std::vector<ScriptLine>& script, bool all_operators);
 

@@ -292,3 +292,15 @@ TEST_F(Cli, AScriptPlaysTheOperatorsLines) {
 
 }  // namespace
 }  // namespace adit::station
+  const Finished none = run({"--name", "op3", "run", file});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("no lines by op3"));
+  const std::string unknown = folder_.write("unknown.yaml",
+                                            "script:\n"
+                                            "  - {at: 0.1, by: op1, do: take r2}\n"
+                                            "  - {at: 0.2, by: op1, do: list}\n");
+  const Finished some = run({"run", unknown});
+  EXPECT_EQ(some.exit_code, 1) << "every command for r2 was refused";
+  EXPECT_THAT(some.out, HasSubstr("r2: "));
+  EXPECT_THAT(some.out, HasSubstr("op1> list"));
+  EXPECT_THAT(some.err, HasSubstr("of 2 commands 1 were refused"));
