@@ -6,12 +6,14 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "basestation/client/paths.hpp"
+#include "core/command/words.hpp"
 #include "core/wire/link_file.hpp"
 
 namespace adit::station::client {
@@ -76,9 +78,18 @@ nlohmann::json ask_hello(LineSocket& socket) {
   }
 }
 
-/// Checks the running station's domain: a station on another domain would send the command to other robots.
-/// Returns a remark for the operator, or nothing.
+std::string text_of(std::vector<std::string> addresses) {
+  std::erase(addresses, "127.0.0.1");
+  std::sort(addresses.begin(), addresses.end());
+  return command::joined(addresses, "loopback");
+}
+
+/// Checks the running station's network: on another domain or interface the command would reach other robots.
+/// Returns a remark on options that have no effect, or nothing.
 Result<std::string> check_running(LineSocket& socket, const StationOptions& options) {
+  const bool asks = options.domain_given || !options.link.empty() || !options.interfaces.empty() ||
+                    !options.peers.empty() || !options.at.empty() || !options.record.empty();
+  if (!asks) return std::string();
   const nlohmann::json hello = ask_hello(socket);
   if (hello.is_null()) return std::string();
   const auto domain = hello.value("domain", options.domain);
@@ -87,11 +98,26 @@ Result<std::string> check_running(LineSocket& socket, const StationOptions& opti
                  "the station of " + options.name + " runs on domain " + std::to_string(domain) +
                      "; leave --domain out, choose another --name, or end it: basestation --name " +
                      options.name + " down"};
+  const std::string running = text_of(hello.value("interfaces", options.interfaces));
+  if (!options.interfaces.empty() && running != text_of(options.interfaces))
+    return Error{Reason::bad_argument,
+                 "the station of " + options.name + " runs on " + running +
+                     "; leave --interface out, choose another --name, or end it: basestation --name " +
+                     options.name + " down"};
+  std::string remark;
+  const auto has_no_effect = [&](const std::string& how, const char* option) {
+    remark += (remark.empty() ? "" : "\n") + ("the station of " + options.name) + " runs " + how + "; " +
+              option + " counts only when a station starts";
+  };
   const auto link = hello.value("link", options.link);
-  if (options.link.empty() || link == options.link) return std::string();
-  return "the station of " + options.name + " runs " +
-         (link.empty() ? "without a link profile" : "on " + link) +
-         "; --link counts only when a station starts";
+  if (!options.link.empty() && link != options.link)
+    has_no_effect(link.empty() ? "without a link profile" : "on " + link, "--link");
+  const auto peers = hello.value("peers", options.peers);
+  if (!options.peers.empty() && peers != options.peers)
+    has_no_effect(peers.empty() ? "without peers" : "with the peers " + command::joined(peers, ""), "--peer");
+  if (!options.at.empty()) has_no_effect("already", "--at");
+  if (!options.record.empty()) has_no_effect("already", "--record");
+  return remark;
 }
 
 }  // namespace
@@ -140,13 +166,9 @@ Result<Connected> connect_or_launch(const StationOptions& options) {
   if (!path) return path.error();
   auto socket = LineSocket::connect(*path);
   if (socket) {
-    std::string remark;
-    if (options.domain_given || !options.link.empty()) {
-      auto same = check_running(*socket, options);
-      if (!same) return same.error();
-      remark = std::move(*same);
-    }
-    return Connected{std::move(*socket), std::move(remark)};
+    auto remark = check_running(*socket, options);
+    if (!remark) return remark.error();
+    return Connected{std::move(*socket), std::move(*remark)};
   }
   if (socket.reason() != Reason::no_station) return socket.error();
   if (const auto link = wire::load_link(options.link.empty() ? "lan" : options.link); !link)

@@ -163,6 +163,18 @@ TEST_F(Cli, ALinkForAStationThatRunsWithoutOneIsReported) {
   EXPECT_THAT(asked.err, HasSubstr("runs without a link profile; --link counts only when a station starts"));
 }
 
+TEST_F(Cli, NetworkOptionsForAStationThatRunsAreReported) {
+  ASSERT_EQ(run({"up"}).exit_code, 0);
+  const Finished interface = run({"--interface", "10.255.255.1", "list"});
+  EXPECT_EQ(interface.exit_code, 2) << "the command would reach other robots";
+  EXPECT_THAT(interface.err, HasSubstr("the station of op1 runs on loopback; leave --interface out"));
+  EXPECT_EQ(run({"--interface", "127.0.0.1", "list"}).err, "");
+  const Finished others = run({"--peer", "127.0.0.1", "--at", "1", "2", "3", "--record", "none", "list"});
+  EXPECT_EQ(others.exit_code, 0);
+  for (const char* option : {"--peer", "--at", "--record"})
+    EXPECT_THAT(others.err, HasSubstr(std::string(option) + " counts only when a station starts")) << option;
+}
+
 TEST_F(Cli, APipedPromptPrintsTextAlone) {
   ASSERT_EQ(run({"up"}).exit_code, 0);
   const Finished piped =
