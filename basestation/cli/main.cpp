@@ -19,6 +19,7 @@
 #include "core/command/parse.hpp"
 #include "core/command/vocabulary.hpp"
 #include "core/command/words.hpp"
+#include "core/config/usage.hpp"
 
 namespace adit::station::cli {
 namespace {
@@ -107,7 +108,8 @@ int main(int argc, char** argv) {
          "Where the station stands, X Y Z of the map in m; others are told, and a link with a range or "
          "that fades reckons with it")
       ->expected(3)
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->check(config::between(-1e4, 1e4));
   app.add_option(
          "--record", options.record,
          "Folder for the recording of the last minutes, or none; below the state folder when not given")
@@ -137,6 +139,13 @@ int main(int argc, char** argv) {
   // These two options may also follow the command.
   if (std::erase(words, "--json") > 0) options.json = true;
   if (std::erase(words, "--help") + std::erase(words, "-h") > 0) words.insert(words.begin(), "help");
+  for (const std::string& word : words) {
+    const std::string option = word.substr(0, word.find('='));
+    if (words[0] != "completion" && option.starts_with("--") && app.get_option_no_throw(option) != nullptr)
+      return fail(options, kExitUsage,
+                  {Reason::bad_argument, option + " goes before the command: basestation " + option +
+                                             " ... " + command::clean(words[0], 40)});
+  }
   catch_interrupts();
   if (words.empty()) return prompt(options);
   return run_command(options, words);

@@ -2,13 +2,14 @@
 #include "basestation/client/arguments.hpp"
 
 #include "core/command/words.hpp"
+#include "core/config/usage.hpp"
 
 namespace adit::station::client {
 
 StationArguments::StationArguments(CLI::App& app, StationOptions& options) : options_(options) {
   app.add_option("--name", options.name, "Operator name; one station runs per name");
   app.add_option("--link", options.link, "Link profile (config/links), for a station that is started");
-  domain_ = app.add_option("--domain", options.domain, "Radio domain")->check(CLI::Range(0, 232));
+  domain_ = app.add_option("--domain", options.domain, "Radio domain")->check(config::between(0, 232));
   // These options take one value each, otherwise they would consume a command.
   app.add_option("--interface", options.interfaces,
                  "Address of a network interface to use, may be repeated; loopback when none is named")

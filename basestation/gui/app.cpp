@@ -19,6 +19,7 @@
 #include "basestation/gui/bridge/qt_station.hpp"
 #include "basestation/gui/window.hpp"
 #include "basestation/model/exit_code.hpp"
+#include "core/config/usage.hpp"
 
 namespace adit::gui {
 namespace {
@@ -47,7 +48,9 @@ std::optional<int> read_options(int argc, char** argv, Options& options) {
   app.add_option("--select", options.select, "Robots that are selected at the start, may be repeated")
       ->allow_extra_args(false);
   app.add_option("--screenshot", options.screenshot, "Write a picture of the window (.png) and end");
-  app.add_option("--after", options.after, "Time until the picture, s")->check(CLI::Range(0.0, 86400.0));
+  app.add_option("--after", options.after, "Time until the picture, s")
+      ->check(config::between(0.0, 86400.0))
+      ->needs("--screenshot");
   app.add_option("--size", options.size, "Size of the window, WIDTHxHEIGHT in pixels");
   app.add_flag("--light", options.light, "Light theme, for sunlight; Ctrl+L changes it");
   app.footer(

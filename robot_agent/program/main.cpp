@@ -77,9 +77,9 @@ Result<RobotConfig> load(const Options& options) {
   auto config = load_robot_config(*file);
   if (!config) return config;
   if (!options.name.empty()) config->name = config->radio.name = options.name;
-  if (!valid_name(config->name))
+  if (!valid_name(config->name) || config->name == "all")
     return Error{Reason::bad_argument,
-                 "a robot's name is 1 to 32 of [A-Za-z0-9_-], not '" + config->name + "'"};
+                 "a robot's name is 1 to 32 of [A-Za-z0-9_-] and not all, not '" + config->name + "'"};
   if (!options.pose.empty()) config->start = {options.pose[0], options.pose[1], options.pose[2]};
   if (options.pose.size() > 3) config->start_height = options.pose[3];
   if (options.domain >= 0) config->radio.domain = static_cast<std::uint32_t>(options.domain);
@@ -270,10 +270,11 @@ int main(int argc, char** argv) {
   app.add_option("--config", options.config, "robot file, as config/robots/r1.yaml");
   app.add_option("--name", options.name, "another name than the file's");
   app.add_option("--pose", options.pose, "start pose X Y YAW [HEIGHT] in the map: m, m, rad, m")
-      ->expected(3, 4);
-  app.add_option("--domain", options.domain, "DDS domain of the radio")->check(CLI::Range(0, 232));
+      ->expected(3, 4)
+      ->check(config::between(-1e4, 1e4));
+  app.add_option("--domain", options.domain, "DDS domain of the radio")->check(config::between(0, 232));
   app.add_option("--robot-domain", options.robot_domain, "DDS domain of the driver")
-      ->check(CLI::Range(0, 232));
+      ->check(config::between(0, 232));
   app.add_option(
       "--link", options.link,
       "link profile (config/links) that all that is sent by radio keeps to: budgets, latency, loss");
@@ -284,12 +285,12 @@ int main(int argc, char** argv) {
       "folder for the recording of the last minutes, or none; below the state folder when not given");
   app.add_flag("--supervised", options.supervised, "run under a parent that sends zero when the agent dies");
   app.add_option("--memory-limit", options.memory_limit, "MB that the agent may use; 0: no limit")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(config::between(0.0, 1e6));
   app.add_flag("--allow-faults", options.allow_faults,
                "let the robot's console make components fail: fault crash|hang COMPONENT");
   app.add_flag("--reports", options.reports)->group("");  // Set by the parent process.
   // For measurements that kill the agent repeatedly.
-  app.add_option("--good-run", options.good_run)->group("")->check(CLI::Range(0.0, 3600.0));
+  app.add_option("--good-run", options.good_run)->group("")->check(config::between(0.0, 3600.0));
   auto* console =
       app.add_subcommand("console", "the robot's own console: status, unlock, peers, health, restart");
   std::vector<std::string> words;
@@ -305,11 +306,11 @@ int main(int argc, char** argv) {
   bool no_turn = false;
   check->add_option("--config", options.config, "robot file, as config/robots/r1.yaml")->required();
   check->add_option("--robot-domain", options.robot_domain, "DDS domain of the driver")
-      ->check(CLI::Range(0, 232));
+      ->check(config::between(0, 232));
   check->add_option("--standing", standing, "how long it listens to the standing robot, s [10]")
-      ->check(CLI::Range(0.1, 600.0));
+      ->check(config::between(0.1, 600.0));
   check->add_option("--turning", turning, "how long it waits for the turn at most, s [60]")
-      ->check(CLI::Range(1.0, 600.0));
+      ->check(config::between(1.0, 600.0));
   check->add_flag("--no-turn", no_turn, "do not ask for a turn");
   try {
     app.parse(argc, argv);

@@ -75,10 +75,12 @@ int main(int argc, char** argv) {
   double length = 0.0;
   app.add_option("scenario", file, "the scenario, SCENARIO.yaml")->required();
   app.add_option("--domain-base", params.domain_base, "robot k is on domain BASE + k")
-      ->check(CLI::Range(0, 200))
+      ->check(config::between(0, 200))
       ->capture_default_str();
-  app.add_option("--seed", params.seed, "of the sensors' noise")->capture_default_str();
-  app.add_option("--for", length, "s; without it until Ctrl-C")->check(CLI::Range(0.1, 86400.0));
+  app.add_option("--seed", params.seed, "of the sensors' noise")
+      ->check(config::between(std::uint64_t{0}))
+      ->capture_default_str();
+  app.add_option("--for", length, "s; without it until Ctrl-C")->check(config::between(0.1, 86400.0));
   app.add_flag("--await-script", params.await_script,
                "times of expectations count from SIGUSR1: the one who plays the script sends it");
   app.add_option("--report", report_file, "write what was true as JSON");

@@ -18,14 +18,15 @@ int main(int argc, char** argv) {
       "Exit status: 0 done, 1 there is no way or a controller did not arrive, 2 wrong usage or unreadable "
       "input.");
 
+  const CLI::Validator place = adit::config::between(-1e4, 1e4);
   RouteOptions route_options;
   std::vector<double> from, to, goal;
   CLI::App* routes = app.add_subcommand("route", "the way over a map from one place to another");
   routes->footer("Example: navtool route --map geb079.bt --from 0 0 0 --to 20 -0.4 0 --json");
   routes->add_option("--map", route_options.map, "OctoMap file (.bt), or its name on the search path")
       ->required();
-  routes->add_option("--from", from, "X Y Z, m")->required()->expected(3);
-  routes->add_option("--to", to, "X Y Z, m")->required()->expected(3);
+  routes->add_option("--from", from, "X Y Z, m")->required()->expected(3)->check(place);
+  routes->add_option("--to", to, "X Y Z, m")->required()->expected(3)->check(place);
   routes->add_option("--platform", route_options.platform, "its name, or a YAML file")->capture_default_str();
   routes->add_flag("--json", route_options.json, "one JSON object");
   routes->add_option("--picture", route_options.picture, "PNG to write");
@@ -42,7 +43,10 @@ int main(int argc, char** argv) {
       "milliseconds, path in the frame of VIEWPOINT.\n"
       "Example: navtool plan --clouds clouds/ --goal 10 0.5 --json");
   plans->add_option("--clouds", plan_options.clouds, "folder of clouds")->required();
-  plans->add_option("--goal", goal, "X Y, m, in the frame of VIEWPOINT")->required()->expected(2);
+  plans->add_option("--goal", goal, "X Y, m, in the frame of VIEWPOINT")
+      ->required()
+      ->expected(2)
+      ->check(place);
   plans->add_option("--platform", plan_options.platform, "its name, or a YAML file")->capture_default_str();
   plans
       ->add_option("--frame", plan_options.frame,
@@ -73,7 +77,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   terrains->add_option("--range", terrain_options.range, "of each cloud, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.5, 100.0));
+      ->check(adit::config::between(0.5, 100.0));
   terrains->add_flag("--json", terrain_options.json, "one JSON object");
   terrains->add_option("--picture", terrain_options.picture, "PNG to write");
 

@@ -32,10 +32,10 @@ int main(int argc, char** argv) {
   evals->add_flag("--align", eval_options.align, "move the estimate onto the truth first (Umeyama, SE(3))");
   evals->add_option("--max-diff", eval_options.max_diff, "of stamps that belong together, s")
       ->capture_default_str()
-      ->check(CLI::Range(1e-9, 10.0));
+      ->check(adit::config::between(1e-9, 10.0));
   evals->add_option("--delta", eval_options.delta, "between the two poses of a relative error")
       ->capture_default_str()
-      ->check(CLI::Range(1e-3, 1e6));
+      ->check(adit::config::between(1e-3, 1e6));
   evals->add_option("--unit", eval_options.unit, "of --delta: f (poses) or m")
       ->capture_default_str()
       ->check(CLI::IsMember({"f", "m"}));
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   odometries->add_option("--clouds", odometry_options.log.clouds, "file, folder, or MCAP file")->required();
   odometries->add_option("--rate", odometry_options.log.rate, "clouds a second, Hz")
       ->capture_default_str()
-      ->check(CLI::Range(0.1, 100.0));
+      ->check(adit::config::between(0.1, 100.0));
   odometries->add_option("--sensor", odometry_options.sensor,
                          "YAML file with the sensors: part of a platform's");
   odometries->add_option("--imu", odometry_options.log.imu, "CSV file");
@@ -79,10 +79,10 @@ int main(int argc, char** argv) {
   maps->add_option("--sensor", map_options.sensor, "YAML file with the sensors: part of a platform's");
   maps->add_option("--resolution", map_options.resolution, "edge of a voxel, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.01, 1.0));
+      ->check(adit::config::between(0.01, 1.0));
   maps->add_option("--range", map_options.range, "of each cloud, m")
       ->capture_default_str()
-      ->check(CLI::Range(0.5, 200.0));
+      ->check(adit::config::between(0.5, 200.0));
   maps->add_option("--out", map_options.out, ".bt, .ot, .pcd or .ply file to write")->required();
   maps->add_flag("--json", map_options.json, "one JSON line a sweep");
 
@@ -94,7 +94,10 @@ int main(int argc, char** argv) {
       "Example: perctool align target.ply source.ply --guess 0 0 0 0 0 0 1 --json");
   aligns->add_option("TARGET", align_options.target, "cloud")->required();
   aligns->add_option("SOURCE", align_options.source, "cloud")->required();
-  aligns->add_option("--guess", guess, "x y z qx qy qz qw")->expected(7)->delimiter(' ');
+  aligns->add_option("--guess", guess, "x y z qx qy qz qw")
+      ->expected(7)
+      ->delimiter(' ')
+      ->check(adit::config::between(-1e6, 1e6));
   aligns->add_flag("--json", align_options.json, "one JSON object");
 
   RecordOptions record_options;
@@ -105,7 +108,8 @@ int main(int argc, char** argv) {
   records->add_option("SCENARIO", record_options.scenario, "scenario file")->required();
   records->add_option("--robot", record_options.robot, "its id")->required();
   records->add_option("--out", record_options.out, "MCAP file to write")->required();
-  CLI::Option* seed_option = records->add_option("--seed", seed, "else the scenario's");
+  CLI::Option* seed_option = records->add_option("--seed", seed, "else the scenario's")
+                                 ->check(adit::config::between(std::uint64_t{0}));
 
   DiffOptions diff_options;
   CLI::App* diffs = app.add_subcommand("diff", "cells of two OctoMap files that are equal, missing, more");

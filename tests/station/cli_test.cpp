@@ -94,7 +94,7 @@ TEST_F(Cli, WrongUsageIsOneLineAndExitTwo) {
   const std::vector<std::vector<std::string>> wrong{
       {"tkae", "r1"},         {"goto", "r1", "north", "1"}, {"--domain", "999", "list"},
       {"--nmae", "x"},        {"--name", "a/b", "list"},    {"run", "/no/such/file.yaml"},
-      {"completion", "tcsh"}, {"camera", "r1", "on"}};
+      {"completion", "tcsh"}, {"camera", "r1", "on"},       {"list", "--name", "op2"}};
   for (const auto& words : wrong) {
     const Finished end = run(words);
     EXPECT_EQ(end.exit_code, 2) << words[0];
@@ -295,15 +295,6 @@ TEST_F(Cli, AScriptPlaysTheOperatorsLines) {
   EXPECT_EQ(end.exit_code, 0);
   EXPECT_THAT(end.out, HasSubstr("op1> list"));
   EXPECT_EQ(end.out.find("op2>"), std::string::npos);
-  const std::string bad = folder_.write("bad.yaml", "script:\n  - {at: 1, by: op1, do: tkae r1}\n");
-  const Finished refused = run({"run", bad});
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("bad.yaml:2"));
-  EXPECT_THAT(refused.err, HasSubstr("did you mean take?"));
-}
-
-}  // namespace
-}  // namespace adit::station
   const Finished none = run({"--name", "op3", "run", file});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.err, HasSubstr("no lines by op3"));
@@ -316,3 +307,12 @@ TEST_F(Cli, AScriptPlaysTheOperatorsLines) {
   EXPECT_THAT(some.out, HasSubstr("r2: "));
   EXPECT_THAT(some.out, HasSubstr("op1> list"));
   EXPECT_THAT(some.err, HasSubstr("of 2 commands 1 were refused"));
+  const std::string bad = folder_.write("bad.yaml", "script:\n  - {at: 1, by: op1, do: tkae r1}\n");
+  const Finished refused = run({"run", bad});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("bad.yaml:2"));
+  EXPECT_THAT(refused.err, HasSubstr("did you mean take?"));
+}
+
+}  // namespace
+}  // namespace adit::station

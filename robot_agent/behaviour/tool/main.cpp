@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
   run_command->add_option("FILE", options.file, "the tree's XML")->required();
   run_command->add_option("--leaves", options.leaves, "YAML with the results of leaves [all succeed]");
   run_command->add_option("--ticks", options.ticks, "how many ticks")
-      ->check(CLI::Range(1, 1'000'000))
+      ->check(adit::config::between(1, 1'000'000))
       ->capture_default_str();
   run_command->add_flag("--json", options.json, "one JSON object a tick");
   run_command
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
           "--tick-ms", options.tick_ms,
           "virtual time from one tick to the next, for Delay, Timeout and Sleep; it starts at 0 and is the "
           "only clock: a dry run never waits")
-      ->check(CLI::Range(0, 3'600'000))
+      ->check(adit::config::between(0, 3'600'000))
       ->capture_default_str();
   run_command->add_option("--tree", options.tree, "ID of the tree [the main tree]");
 

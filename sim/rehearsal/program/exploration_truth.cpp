@@ -141,10 +141,10 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("--platform", options.platform, "its name, or a YAML file")->capture_default_str();
   app.add_option("--lidar-height", options.height, "m above the ground, instead of the platform's")
-      ->check(CLI::Range(0.05, 5.0));
+      ->check(config::between(0.05, 5.0));
   app.add_flag("--of-lidar", options.of_lidar, "the poses are the lidar's");
   app.add_option("--unseen", options.unseen, "also list so many patches that were not seen, largest first")
-      ->check(CLI::Range(0, 100'000));
+      ->check(config::between(0, 100'000));
   app.add_flag("--json", options.json, "one JSON object");
   app.footer(
       "A cell of 0.5 m counts once a ray of the lidar passed it within 12 m. 100 % is what can be seen from\n"

@@ -143,7 +143,7 @@ int main(int argc, char** argv) {
   app.add_option("scenario", file, "the scenario, SCENARIO.yaml (with --chaos: scenarios/team_chaos.yaml)");
   auto* seed_option =
       app.add_option("--seed", seed, "of everything that is random (default: the scenario's, or 1)")
-          ->check(CLI::NonNegativeNumber);
+          ->check(config::between(std::uint64_t{0}));
   auto* seeds_option =
       app.add_option("--seeds", seeds_text, "A..B: one run for each, in parallel, and a table");
   auto* report_option = app.add_option("--report", report_file, "write the report as JSON");
@@ -161,7 +161,7 @@ int main(int argc, char** argv) {
   auto* threads_option = app.add_option("--threads", params.workers,
                                         "for the heavy work of the run, 1 to 64 (2 if left out); the run is "
                                         "the same with any number")
-                             ->check(CLI::Range(1, 64));
+                             ->check(config::between(1, 64));
   threads_option->excludes(seeds_option);
   auto* chaos_option =
       app.add_flag("--chaos", chaos,
@@ -185,6 +185,10 @@ int main(int argc, char** argv) {
   }
   if (file.empty() && !chaos)
     return report_error("rehearse", {Reason::bad_argument, "expected a scenario, SCENARIO.yaml, or --chaos"});
+  if (until_failure && seeds_text.empty())
+    return report_error("rehearse", {Reason::bad_argument, "--until-failure goes with --seeds A..B"});
+  const auto seeds = seeds_text.empty() ? Result<SeedRange>(SeedRange{}) : parse_seeds(seeds_text);
+  if (!seeds) return report_error("rehearse", seeds.error());
   if (file.empty()) {
     const auto found = config::find_file(kChaosScenario);
     if (!found) return report_error("rehearse", found.error());
@@ -202,8 +206,6 @@ int main(int argc, char** argv) {
   params.make_agent = *factory;
   params.parent_wire = make_parent_decorator(defect);
   if (seeds_text.empty() && !chaos) return run_one(*scenario, *world, params, report_file, picture_file);
-  auto seeds =
-      seeds_text.empty() ? Result<SeedRange>(SeedRange{params.seed, params.seed}) : parse_seeds(seeds_text);
-  if (!seeds) return report_error("rehearse", seeds.error());
-  return run_many(*scenario, *world, params, *seeds, {chaos, until_failure, shrink_to});
+  const SeedRange range = seeds_text.empty() ? SeedRange{params.seed, params.seed} : *seeds;
+  return run_many(*scenario, *world, params, range, {chaos, until_failure, shrink_to});
 }

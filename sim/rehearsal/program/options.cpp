@@ -21,8 +21,12 @@ Result<SeedRange> parse_seeds(const std::string& text) {
   const bool read = dots != std::string::npos &&
                     parse_number(std::string_view(text).substr(0, dots), out.first) &&
                     parse_number(std::string_view(text).substr(dots + 2), out.last);
-  if (!read || out.last < out.first || out.last - out.first >= kMaxSeeds)
-    return Error{Reason::bad_argument, "--seeds " + text + ": expected A..B with A not above B, e.g. 1..200"};
+  const auto refuse = [&](const std::string& what) {
+    return Error{Reason::bad_argument, "--seeds: expected " + what + ", not '" + text.substr(0, 50) + "'"};
+  };
+  if (!read) return refuse("A..B, two whole numbers as in 1..200");
+  if (out.last < out.first) return refuse("A..B with A not above B");
+  if (out.last - out.first >= kMaxSeeds) return refuse("at most " + std::to_string(kMaxSeeds) + " seeds");
   return out;
 }
 
