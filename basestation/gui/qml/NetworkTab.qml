@@ -46,7 +46,7 @@ Item {
         width: toggle.x - x - 2 * Theme.mm
         height: toggle.height
         color: Theme.dim
-        text: tab.matrix ? "Row hears column: heartbeats lost in percent. Blank: your station does not know." : "The bar is what an agent sends of its link's budget, by traffic class."
+        text: tab.matrix ? "Row hears column: heartbeats lost in percent. Blank: your station does not know." : "The bar: what an agent sends of its link profile's budget, by traffic class. Without a profile: no bar."
     }
     HoldButton {
         id: toggle
