@@ -80,9 +80,18 @@ bool Station::Impl::complete() const {
   });
 }
 
-bool Station::Impl::must_wait(const Request& request) const {
+bool Station::Impl::must_wait(std::uint64_t handle, const Request& request) const {
   // A stop is never delayed: it is also sent to robots that were not heard yet.
   if (request.verb == verb("stop")) return false;
+  // No command overtakes an earlier one for the same robot.
+  const auto& robots = request.robots;
+  if (std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& other) {
+        const auto& others = other.request.robots;
+        return other.handle < handle && (other.request.all || request.all ||
+                                         std::find_first_of(others.begin(), others.end(), robots.begin(),
+                                                            robots.end()) != others.end());
+      }))
+    return true;
   if (!known(request) && fresh(params_.discovery_grace)) return true;
   if (request.info->runs != Runs::query && !request.all) return false;
   // Just after the start the first results are incomplete, and an absent robot looks like a late one.
@@ -91,15 +100,7 @@ bool Station::Impl::must_wait(const Request& request) const {
 
 std::uint64_t Station::Impl::execute(const Request& request, Done done) {
   const std::uint64_t handle = next_handle_++;
-  // A later command does not overtake commands that are queued for the same robot.
-  const bool behind = request.verb != verb("stop") &&
-                      std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {
-                        return earlier.request.all || request.all ||
-                               std::find_first_of(earlier.request.robots.begin(),
-                                                  earlier.request.robots.end(), request.robots.begin(),
-                                                  request.robots.end()) != earlier.request.robots.end();
-                      });
-  if ((behind || must_wait(request)) && waiting_.size() < kMaxWaiting)
+  if (must_wait(handle, request) && waiting_.size() < kMaxWaiting)
     waiting_.push_back({handle, request, std::move(done)});
   else
     run(handle, request, std::move(done));
@@ -430,14 +431,14 @@ void Station::Impl::tick() {
     }
   acknowledge_pieces();
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
-  for (Waiting& next : std::exchange(waiting_, {})) {
-    const bool behind = std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {
-      return earlier.request.all || next.request.all || earlier.request.robots == next.request.robots;
-    });
-    if (behind || must_wait(next.request))
-      waiting_.push_back(std::move(next));
-    else
-      run(next.handle, next.request, std::move(next.done));
+  const auto ready = [this] {
+    return std::find_if(waiting_.begin(), waiting_.end(),
+                        [this](const Waiting& next) { return !must_wait(next.handle, next.request); });
+  };
+  for (auto next = ready(); next != waiting_.end(); next = ready()) {
+    Waiting due = std::move(*next);
+    waiting_.erase(next);
+    run(due.handle, due.request, std::move(due.done));
   }
   for (StopAll& all : stop_alls_)
     for (const std::string& robot : fleet_.robot_names()) ask_stop(all, robot);

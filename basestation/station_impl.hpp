@@ -94,7 +94,7 @@ class Station::Impl {
   void heard_acknowledgement(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
 
   // Defined in execute.cpp: command lines.
-  bool must_wait(const command::Request& request) const;
+  bool must_wait(std::uint64_t handle, const command::Request& request) const;
   bool known(const command::Request& request) const;
   /// Whether a peer was heard, and of each peer all messages that `list` shows.
   bool complete() const;

@@ -388,6 +388,34 @@ TEST_F(FreshStation, KeepsTheOrderOfWhatWaits) {
   EXPECT_EQ(robots_[0]->commands().back().command.kind(), radio::CMD_GOTO);
 }
 
+TEST_F(FreshStation, ACommandDoesNotOvertakeOneThatWaitsForAFurtherRobot) {
+  add("r1");
+  start();
+  run_for(1s);
+  begin("take r1 r2");
+  begin("goto r1 1 2");
+  scheduler_.at(2s, [this] { add("r2"); });
+  run_for(4s);
+  ASSERT_EQ(late_.size(), 2U);
+  const auto& heard = robots_[0]->commands();
+  ASSERT_EQ(robots_[0]->numbers().size(), 2U);
+  EXPECT_EQ(heard.front().command.kind(), radio::CMD_TAKE) << "goto overtook take";
+  EXPECT_EQ(heard.back().command.kind(), radio::CMD_GOTO);
+}
+
+TEST_F(FreshStation, ACommandGivenOnARefusalDoesNotOvertakeOneThatWaits) {
+  add("r1");
+  start();
+  run_for(1s);
+  strand_->post([this] {
+    op_->execute("take r9", [this](const Outcome&) { op_->execute("goto r1 1 2", [](const Outcome&) {}); });
+  });
+  begin("take r1 r9");
+  run_for(6s);
+  ASSERT_EQ(robots_[0]->numbers().size(), 2U);
+  EXPECT_EQ(robots_[0]->commands().front().command.kind(), radio::CMD_TAKE) << "goto overtook take";
+}
+
 TEST_F(FreshStation, ANamedStopGoesOutBeforeTheRobotIsHeard) {
   add("r1").alive = false;
   start();
