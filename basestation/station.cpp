@@ -328,7 +328,10 @@ Station::~Station() = default;
 Result<void> Station::start() { return impl_->start(); }
 
 std::uint64_t Station::execute(const std::string& line, Done done) {
-  auto request = command::parse(line);
+  return execute(command::parse(line), std::move(done));
+}
+
+std::uint64_t Station::execute(const Result<command::Request>& request, Done done) {
   if (!request) return impl_->refuse(request.error(), done);
   if (request->info->runs == command::Runs::terminal)
     return impl_->refuse(
@@ -336,9 +339,6 @@ std::uint64_t Station::execute(const std::string& line, Done done) {
   return impl_->execute(*request, std::move(done));
 }
 
-std::uint64_t Station::execute(const command::Request& request, Done done) {
-  return impl_->execute(request, std::move(done));
-}
 void Station::cancel(std::uint64_t handle) { impl_->cancel(handle); }
 std::uint64_t Station::teleop(const std::string& robot, Done done) {
   return impl_->teleop(robot, std::move(done));

@@ -14,6 +14,7 @@
 #include "basestation/send/answer.hpp"
 #include "core/command/request.hpp"
 #include "core/exec/executor.hpp"
+#include "core/result/result.hpp"
 #include "core/store/disk.hpp"
 #include "core/wire/participant.hpp"
 
@@ -57,7 +58,7 @@ class Station {
   /// Runs one command line; `done` is called once, at once or later. Returns a handle for cancel(). The lines
   /// that need a terminal or files (watch, teleop, run) are refused here with wrong usage.
   std::uint64_t execute(const std::string& line, Done done);
-  std::uint64_t execute(const command::Request& request, Done done);
+  std::uint64_t execute(const Result<command::Request>& request, Done done);
   /// Cancels a running command: a drive streams zero and ends its stream, a wait ends. Its `done` gets
   /// `cancelled`. An unknown handle is ignored.
   void cancel(std::uint64_t handle);

@@ -9,15 +9,16 @@
 #include "basestation/model/delta.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/model/json_reader.hpp"
-#include "core/command/parse.hpp"
-#include "core/command/words.hpp"
 
 namespace adit::station::client {
 
 using nlohmann::json;
 
 Connection::Connection(LineSocket socket, const std::string& front_end) : socket_(std::move(socket)) {
-  send(line_of({{"front_end", front_end}}));
+  json about{{"front_end", front_end}};
+  std::error_code failed;
+  if (const auto folder = std::filesystem::current_path(failed); !failed) about["folder"] = folder.string();
+  send(line_of(about));
 }
 
 Connection::~Connection() = default;
@@ -27,7 +28,7 @@ void Connection::send(const std::string& line) {
 }
 
 std::int64_t Connection::execute(const std::string& line) {
-  send(line_of({{"id", next_}, {"do", with_absolute_files(line)}}));
+  send(line_of({{"id", next_}, {"do", line}}));
   return next_++;
 }
 
@@ -156,18 +157,6 @@ std::string quoted(const std::vector<std::string>& words) {
     line += '\'';
   }
   return line;
-}
-
-std::string with_absolute_files(const std::string& line) {
-  const auto request = command::parse(line);
-  auto words = command::split_words(line);
-  if (!request || !words || request->word("FILE").empty()) return line;
-  const auto file = std::find(words->begin() + 1, words->end(), request->word("FILE"));
-  std::error_code failed;
-  const auto absolute = std::filesystem::absolute(*file, failed).lexically_normal();
-  if (failed) return line;
-  *file = absolute.string();
-  return quoted(*words);
 }
 
 }  // namespace adit::station::client

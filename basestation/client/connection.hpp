@@ -21,7 +21,8 @@ namespace adit::station::client {
 /// A connection of one process to its station, for one thread. Callbacks run within wait().
 class Connection {
  public:
-  /// `front_end`: name under which the station's other clients see this client's commands.
+  /// `front_end`: name under which the station's other clients see this client's commands. Files in its
+  /// command lines are relative to the process's folder at this time.
   Connection(LineSocket socket, const std::string& front_end);
   ~Connection();
 
@@ -76,9 +77,6 @@ class Connection {
   std::unique_ptr<WorldBuilder> world_{};  ///< Of a connection that follows.
 };
 
-/// Makes the path of a command's file absolute: the station, which opens it, runs in another folder. A line
-/// without a file, or that is wrong, is returned unchanged.
-std::string with_absolute_files(const std::string& line);
 /// Joins words into one line that splits into the same words.
 std::string quoted(const std::vector<std::string>& words);
 

@@ -12,7 +12,9 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 
+#include "basestation/client/connection.hpp"
 #include "basestation/host/snapshot.hpp"
 #include "basestation/model/exit_code.hpp"
 #include "basestation/model/json.hpp"
@@ -40,6 +42,20 @@ json busy(const std::string& why) {
   const json script{
       {"exit", kExitRefused}, {"ok", false}, {"reason", name(Reason::queue_full)}, {"error", why}};
   return outcome_json(kExitRefused, "", why + "\n", script);
+}
+
+/// Parses a command line; a file in it is relative to `folder`. Errors: as of command::parse().
+Result<command::Request> parsed(const std::string& line, const std::string& folder) {
+  auto request = command::parse(line);
+  if (!request || folder.empty()) return request;
+  for (command::ArgumentValue& value : request->values) {
+    if (value.name != "FILE" || value.words.front().empty()) continue;
+    std::string& file = value.words.front();
+    file = (std::filesystem::path(folder) / file).lexically_normal().string();
+    // The same bounds as for a typed word.
+    if (const auto typed = command::split_words(client::quoted({file})); !typed) return typed.error();
+  }
+  return request;
 }
 
 /// Whether the peer is the user who runs the station, or root.
@@ -188,11 +204,11 @@ void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const 
     hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", ended}}});
   };
   const bool posted = strand_->post([this, number, id, line, robot, handle, front_end = client.front_end,
-                                     pid = client.pid, answer] {
-    const auto parsed = command::parse(line);
+                                     folder = client.folder, pid = client.pid, answer] {
+    const auto typed = parsed(line, folder);
     const CommandEvent event{.id = ++last_command_,
                              .line = (robot.empty() ? line : "teleop " + robot).substr(0, kMaxEventText),
-                             .query = robot.empty() && parsed && parsed->info->runs == command::Runs::query,
+                             .query = robot.empty() && typed && typed->info->runs == command::Runs::query,
                              .front_end = front_end,
                              .pid = pid};
     const auto done = [this, number, event, answer](const Outcome& outcome) {
@@ -206,7 +222,7 @@ void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const 
     };
     hand_over({Reply::Kind::answer, number, {{"id", id}, {"begun", true}}});
     hand_over({Reply::Kind::event, number, json_of(event)});
-    *handle = robot.empty() ? station_->execute(line, done) : station_->teleop(robot, done);
+    *handle = robot.empty() ? station_->execute(typed, done) : station_->teleop(robot, done);
   });
   if (posted) return;
   hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", busy("the station has too much to do")}}});
@@ -261,6 +277,11 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& lin
     if (!name->is_string() || !command::valid_name(name->get<std::string>()))
       return wrong("a front end has a name of 1 to 32 of A-Z a-z 0-9 _ -");
     client.front_end = name->get<std::string>();
+    const auto folder = request.find("folder");
+    if (folder == request.end()) return;
+    if (!folder->is_string() || !folder->get<std::string>().starts_with('/'))
+      return wrong("a front end's folder is an absolute path");
+    client.folder = folder->get<std::string>();
     return;
   }
   if (const auto map = request.find("map"); map != request.end()) {

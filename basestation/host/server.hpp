@@ -32,7 +32,9 @@ namespace adit::station::host {
 ///                                      -> {"map": {...}, "more": true|false}: the tiles that changed since;
 ///                                      `look`, which may be missing: what robots are to send first
 ///     {"hello": true}                  -> {"hello": {...}}
-///     {"front_end": "watch"}           names the client for the others
+///     {"front_end": "watch", "folder": "/home/op"}
+///                                      names the client for the others; files in its lines are relative to
+///                                      `folder`, which may be missing
 ///
 /// A delta (model/delta.hpp) leads from the state that the client read last to the newest one. It comes when
 /// something changed: at most every 20 ms, every 100 ms if only robots moved, and at least every 0.4 s.
@@ -72,6 +74,7 @@ class Server {
     client::LineSocket socket{};
     Outbox outbox{};
     std::string front_end{"program"};
+    std::string folder{};  ///< To which files in its command lines are relative; empty: the station's own.
     pid_t pid{};
     bool cut_off{false};  ///< Only its unread lines are still sent.
     bool watches{false};

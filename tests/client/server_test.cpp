@@ -11,6 +11,7 @@
 #include "basestation/host/outbox.hpp"
 #include "basestation/model/json.hpp"
 #include "core/command/words.hpp"
+#include "core/time/random.hpp"
 #include "tests/client/server_bench.hpp"
 
 namespace adit::station::host {
@@ -161,6 +162,63 @@ TEST_F(ServerTest, APlaceToLookAtThatDoesNotFitIsRefused) {
                           json{1, 2, 0}, json{1, 2, 1e9}, json{1, json(), 3}})
     EXPECT_TRUE(ask(bad).contains("wrong")) << bad;
   EXPECT_TRUE(ask({1.5, -2, 20}).contains("map"));
+}
+
+TEST_F(ServerTest, FilesAreRelativeToTheFolderOfTheFrontEnd) {
+  Talk talk(path());
+  const auto error = [&](const std::string& file) {
+    talk.say({{"id", 1}, {"do", "map picture " + file}});
+    return talk.next("outcome")["outcome"]["error"];
+  };
+  EXPECT_EQ(error("site"), "map: site: a picture is a .png\n") << "without a folder: the station's";
+  talk.say({{"front_end", "shell"}, {"folder", "/home/op"}});
+  EXPECT_EQ(error("site"), "map: /home/op/site: a picture is a .png\n");
+  EXPECT_EQ(error("'../a site'"), "map: /home/a site: a picture is a .png\n");
+  EXPECT_EQ(error("/tmp/site"), "map: /tmp/site: a picture is a .png\n");
+  EXPECT_EQ(error("picture"), "map: /home/op/picture: a picture is a .png\n") << "a name like the keyword's";
+}
+
+TEST_F(ServerTest, AFolderThatDoesNotFitIsRefused) {
+  Talk talk(path());
+  for (const json& bad : {json(5), json(), json::array(), json("home"), json("")}) {
+    talk.say({{"front_end", "shell"}, {"folder", bad}});
+    EXPECT_TRUE(talk.next("").contains("wrong")) << bad;
+  }
+  for (const std::string& bad : {std::string("/a\x1b[31m"), "/" + std::string(5000, 'a')}) {
+    talk.say({{"front_end", "shell"}, {"folder", bad}});
+    talk.say({{"id", 1}, {"do", "map picture site.png"}});
+    EXPECT_EQ(talk.next("outcome")["outcome"]["exit"], 2);
+    talk.say({{"id", 1}, {"do", "up"}});
+    EXPECT_EQ(talk.next("outcome")["outcome"]["exit"], 0) << "commands without a file need no folder";
+  }
+}
+
+TEST_F(ServerTest, SpoiledRequestsAreAnsweredAndDisturbNoOther) {
+  const std::vector<std::string> good{line_of({{"front_end", "shell"}, {"folder", "/home/op"}}),
+                                      line_of({{"id", 1}, {"do", "take r1 r2"}}),
+                                      line_of({{"id", 2}, {"teleop", "r1"}}),
+                                      line_of({{"id", 2}, {"stick", {0.5, 0.0, -1.0}}}),
+                                      line_of({{"cancel", 2}}),
+                                      line_of({{"map", {{"run", 0}, {"revision", 0}, {"look", {1, 2, 3}}}}})};
+  Random random(5);
+  const auto drawn = [&](std::size_t count) { return static_cast<std::size_t>(random.below(count)); };
+  Talk spoiler(path()), other(path());
+  for (int i = 0; i < 2000; ++i) {
+    std::string line = good[drawn(good.size())];
+    for (std::size_t spoils = 1 + drawn(3); spoils > 0; --spoils) {
+      char byte = static_cast<char>(drawn(256));
+      if (byte == '\n') byte = ' ';
+      line[drawn(line.size())] = byte;
+    }
+    line.resize(line.size() - drawn(4));
+    ASSERT_TRUE(spoiler.socket().send_line(line));
+    do (void)spoiler.arrived("");
+    while (spoiler.socket().flush() && spoiler.socket().has_backlog());
+  }
+  spoiler.say({{"hello", true}});
+  EXPECT_FALSE(spoiler.next("hello").is_null());
+  other.say({{"id", 1}, {"do", "up"}});
+  EXPECT_EQ(other.next("outcome")["outcome"]["exit"], 0);
 }
 
 TEST_F(ServerTest, EveryFrontEndSeesTheCommandsOfTheOthers) {
