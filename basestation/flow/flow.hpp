@@ -36,6 +36,10 @@ class Flow : public std::enable_shared_from_this<Flow> {
   virtual void cancel(Reason reason, const std::string& text) = 0;
   /// Ends at once because another flow takes over the robot; leaves a stream, if any, centred but running.
   virtual void hand_over() { cancel(Reason::cancelled, "another command took its place"); }
+  /// Whether it drives the robot by a stick: a robot has one such flow.
+  virtual bool is_drive() const { return false; }
+  /// Sets the stick's new position, if a live stick drives the robot.
+  virtual void set_velocity(const StickVelocity& /*velocity*/) {}
   /// Processes a refusal of the joystick stream.
   virtual void stream_refused(Reason, const std::string& /*text*/) {}
   const std::string& robot() const { return robot_; }

@@ -29,8 +29,8 @@ class Steer final : public Flow {
   void hand_over() override;
   void stream_refused(Reason reason, const std::string& text) override;
   bool over() const override { return phase_ == Phase::over; }
-  /// Sets the stick's new position, for `teleop`.
-  void set_velocity(const StickVelocity& velocity);
+  bool is_drive() const override { return true; }
+  void set_velocity(const StickVelocity& velocity) override;
 
  private:
   enum class Phase : std::uint8_t {

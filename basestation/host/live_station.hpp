@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "basestation/client/options.hpp"
-#include "basestation/station.hpp"
+#include "basestation/station/station.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "core/record/flight_recorder.hpp"
 

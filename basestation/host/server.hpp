@@ -15,7 +15,7 @@
 #include "basestation/model/delta.hpp"
 #include "basestation/model/notice.hpp"
 #include "basestation/model/world.hpp"
-#include "basestation/station.hpp"
+#include "basestation/station/station.hpp"
 
 namespace adit::station::host {
 

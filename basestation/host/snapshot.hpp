@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "basestation/model/world.hpp"
-#include "basestation/station.hpp"
+#include "basestation/station/station.hpp"
 
 namespace adit::station::host {
 

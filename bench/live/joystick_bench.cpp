@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "adit/command.h"
-#include "basestation/station.hpp"
+#include "basestation/station/station.hpp"
 #include "bench/live/stamps.hpp"
 #include "bench/live/tapped_wire.hpp"
 #include "core/exec/live_runtime.hpp"

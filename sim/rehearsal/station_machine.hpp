@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include "basestation/station.hpp"
+#include "basestation/station/station.hpp"
 #include "core/time/random.hpp"
 #include "sim/rehearsal/robot_machine.hpp"
 #include "sim/truth/map_truth.hpp"

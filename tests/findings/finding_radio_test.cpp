@@ -4,7 +4,7 @@
 
 #include <iostream>
 
-#include "basestation/station.hpp"
+#include "basestation/station/station.hpp"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/store/memory_disk.hpp"
 #include "core/wire/memory/simulated_network.hpp"

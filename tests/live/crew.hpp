@@ -6,7 +6,7 @@
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "adit/robot.h"
-#include "basestation/station.hpp"
+#include "basestation/station/station.hpp"
 #include "core/wire/typed.hpp"
 #include "robot_agent/agent.hpp"
 #include "tests/live/net.hpp"

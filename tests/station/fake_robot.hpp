@@ -14,7 +14,7 @@
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "adit/robot.h"
-#include "basestation/station.hpp"
+#include "basestation/station/station.hpp"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/wire/memory/simulated_network.hpp"
 #include "core/wire/typed.hpp"

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/commands/station_commands.hpp"
+
+#include <algorithm>
+
+#include "basestation/findings/report.hpp"
+#include "basestation/model/json.hpp"
+#include "basestation/model/json_reports.hpp"
+#include "basestation/report/json.hpp"
+#include "basestation/report/table.hpp"
+#include "basestation/report/text.hpp"
+#include "core/command/words.hpp"
+
+namespace adit::station {
+namespace {
+
+using command::Request;
+using command::verb;
+using nlohmann::json;
+
+Outcome robot_status(const Request& request, const QuerySubject& subject, const RobotView& robot) {
+  json values = json_of(described(robot, subject.now));
+  values["notifications"] = notices_json(subject.fleet, robot.name, subject.now);
+  return done_outcome(request, status_text(subject.fleet, robot, subject.now), values);
+}
+
+Outcome station_status(const Request& request, const QuerySubject& subject) {
+  const auto& [params, fleet, counts, content, up, now] = subject;
+  json values = list_json(fleet, now);
+  values.update({{"station", params.name},
+                 {"link", params.link},
+                 {"up_for", seconds(up)},
+                 {"commands", json_of(counts)},
+                 {"notifications", notices_json(fleet, "", now)}});
+  return done_outcome(
+      request,
+      "station " + params.name + (params.link.empty() ? ", no link profile" : " on " + params.link) +
+          ", up " + fixed(seconds(up), 0) + " s; commands " + std::to_string(counts.sent) + " sent, " +
+          std::to_string(counts.accepted) + " accepted, " + std::to_string(counts.refused) + " refused, " +
+          std::to_string(counts.unanswered) + " unanswered\n" + list_text(fleet, now),
+      values);
+}
+
+/// `selection` empty: all robots.
+Outcome health(const Request& request, const Fleet& fleet, std::vector<const RobotView*> selection) {
+  if (selection.empty())
+    for (const auto& [robot_name, robot] : fleet.robots()) selection.push_back(&robot);
+  json robots = json::array();
+  for (const RobotView* robot : selection) robots.push_back(health_json(*robot));
+  return done_outcome(request, selection.empty() ? "no robot has been heard\n" : health_text(selection),
+                      {{"robots", robots}});
+}
+
+Outcome unknown_robot(const Request& request, const Fleet& fleet, const std::string& robot) {
+  const std::string line = robot + ": " + unknown_text(fleet);
+  return refused_outcome(request, Reason::unknown_robot, line, line + "\n");
+}
+
+/// Findings stay available when their robot is lost.
+Outcome list_findings(const Request& request, const Fleet& fleet, Content& content) {
+  const auto& all = content.desk().all();
+  for (const std::string& robot : request.robots) {
+    const bool found =
+        std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.first.robot == robot; });
+    if (!found && !fleet.robot(robot)) return unknown_robot(request, fleet, robot);
+  }
+  const FoundReport report = findings_report(content.desk(), content.book(), fleet, request.robots);
+  Outcome outcome =
+      done_outcome(request, findings_text(report), findings_json(report, content.desk(), content.book()));
+  const std::uint64_t refused = content.pieces().refused(transfer::Kind::findings);
+  outcome.json["refused_pieces"] = refused;
+  if (refused > 0) outcome.text += std::to_string(refused) + " pieces of findings refused\n";
+  return outcome;
+}
+
+Outcome refused(const Request& request, const Error& error) {
+  return refused_outcome(request, error.reason, "finding: " + error.text, error.text);
+}
+
+Verdict verdict_of(const std::string& word) {
+  if (word == "confirm") return Verdict::confirmed;
+  return word == "reject" ? Verdict::rejected : Verdict::open;
+}
+
+std::string note_of(const Request& request) {
+  const command::ArgumentValue* text = request.find("TEXT");
+  std::string note;
+  if (text)
+    for (const std::string& word : text->words) note += (note.empty() ? "" : " ") + word;
+  return note;
+}
+
+Outcome judged(const Request& request, const findings::Key& key, const FindingBook::Entry& entry) {
+  std::string text = "finding " + std::to_string(entry.number) + " of " + key.robot;
+  if (request.verb != verb("finding note"))
+    text += std::string(" is ") + to_string(entry.verdict);
+  else
+    text += entry.note.empty() ? " has no note" : " has the note: " + entry.note;
+  return done_outcome(request, text + "\n",
+                      {{"number", entry.number},
+                       {"robot", key.robot},
+                       {"id", findings::id_text(key.id)},
+                       {"verdict", to_string(entry.verdict)},
+                       {"note", entry.note}});
+}
+
+}  // namespace
+
+std::string unknown_text(const Fleet& fleet) {
+  return "no robot of that name has been heard; known robots: " +
+         command::joined(fleet.robot_names(), "none");
+}
+
+Outcome query_outcome(const Request& request, const QuerySubject& subject) {
+  const Fleet& fleet = subject.fleet;
+  if (request.verb == verb("findings")) return list_findings(request, fleet, subject.content);
+  std::vector<const RobotView*> selection;
+  for (const std::string& robot : request.robots) {
+    selection.push_back(fleet.robot(robot));
+    if (!selection.back()) return unknown_robot(request, fleet, robot);
+  }
+  if (request.verb == verb("list"))
+    return done_outcome(request, list_text(fleet, subject.now), list_json(fleet, subject.now));
+  if (request.verb == verb("status"))
+    return selection.empty() ? station_status(request, subject)
+                             : robot_status(request, subject, *selection.front());
+  if (request.verb == verb("net"))
+    return done_outcome(request, net_text(fleet, subject.now, subject.params.link, subject.params.bandwidth),
+                        net_json(fleet, subject.now));
+  if (request.verb == verb("health")) return health(request, fleet, selection);
+  const std::vector<Action> rows = actions({selection.begin(), selection.end()});
+  return done_outcome(request, actions_text(rows), {{"actions", actions_json(rows)}});
+}
+
+void judge_finding(const Request& request, Content& content,
+                   const std::function<void(const Outcome&)>& done) {
+  const double number = request.number("N");
+  const auto index = static_cast<std::uint32_t>(number);
+  const findings::Key* found = static_cast<double>(index) == number ? content.book().key_of(index) : nullptr;
+  if (!found || !content.desk().all().contains(*found))
+    return done(refused(request,
+                        {Reason::out_of_range, "there is no finding of that number; `findings` lists them"}));
+  const auto written = [&content, request, done, key = *found](const Result<void>& stored) {
+    done(stored ? judged(request, key, *content.book().find(key))
+                : refused(request, {stored.error().reason, "not stored: " + stored.error().text}));
+  };
+  if (request.verb == verb("finding note")) return content.book().note(*found, note_of(request), written);
+  content.book().judge(*found, verdict_of(request.word("VERDICT")), written);
+}
+
+}  // namespace adit::station

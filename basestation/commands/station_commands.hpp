@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <string>
+
+#include "basestation/commands/outcome.hpp"
+#include "basestation/content/content.hpp"
+#include "basestation/model/counts.hpp"
+
+/// Commands that the station carries out itself.
+namespace adit::station {
+
+/// What queries report on.
+struct QuerySubject {
+  const StationParams& params;
+  const Fleet& fleet;
+  const Counts& counts;
+  Content& content;
+  Duration up{};  ///< Time since the station's start.
+  Time now{};
+};
+
+/// Answers `list`, `status`, `net`, `actions`, `health` or `findings`.
+Outcome query_outcome(const command::Request& request, const QuerySubject& subject);
+/// Runs `finding N ...`: stores what the operator decides about a finding, and then calls `done`.
+void judge_finding(const command::Request& request, Content& content,
+                   const std::function<void(const Outcome&)>& done);
+/// Why there is no robot of a name.
+std::string unknown_text(const Fleet& fleet);
+
+}  // namespace adit::station

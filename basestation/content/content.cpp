@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/content/content.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "adit/bulk.h"
+#include "core/command/words.hpp"
+#include "core/transfer/receipt_message.hpp"
+#include "core/wire/typed.hpp"
+#include "perception/map/voxel_image.hpp"
+
+namespace adit::station {
+namespace {
+
+constexpr Duration kCarrierHeard{std::chrono::seconds(30)};
+constexpr Duration kLookHolds{std::chrono::seconds(5)};  // Front ends say every second what they show.
+constexpr std::uint64_t kStartSalt = 1;                  // Beside the sequence of the phases.
+
+radio::BulkDigest to_radio(const transfer::ContentDigest& digest) {
+  radio::BulkDigest out;
+  out.robot(digest.robot);
+  out.parts(digest.parts);
+  return out;
+}
+
+}  // namespace
+
+Content::Content(const StationParams& params, Executor& strand, wire::Participant& radio, Fleet& fleet,
+                 const Presence& presence)
+    : params_(params),
+      strand_(strand),
+      radio_(radio),
+      fleet_(fleet),
+      presence_(presence),
+      book_(params.disk, strand),
+      pieces_([&strand] { return strand.now(); }),
+      desk_({}, params.disk, strand, desk_outputs()),
+      map_(drawn_start(), params.disk, strand,
+           [this](const std::string& text) { warn("map_not_stored", text); }) {}
+
+Content::~Content() = default;
+
+void Content::load_findings() {
+  if (const std::string lost = desk_.load().text(); !lost.empty()) warn("findings_damaged", lost);
+  if (const std::string lost = book_.load(); !lost.empty()) warn("findings_damaged", lost);
+  for (const auto& [key, finding] : desk_.all()) book_.add(key);
+}
+
+Result<void> Content::open() {
+  if (!params_.content) return {};
+  if (const std::string lost = map_.load(); !lost.empty()) warn("map_damaged", lost);
+  pieces_.add(transfer::Kind::findings, [this](const PieceReader::Piece& piece, PieceReader::Stored stored) {
+    return desk_.hear(piece.robot, piece.data, std::move(stored));
+  });
+  pieces_.otherwise([this](const PieceReader::Piece& piece, const PieceReader::Stored& stored) {
+    return map_.take(piece.robot, piece.kind, piece.waiting, piece.data, stored);
+  });
+  auto receipts = wire::Writer<radio::BulkAck>::make(radio_, wire::topics::kBulkAck);
+  if (!receipts) return receipts.error();
+  receipts_ = std::make_unique<wire::Writer<radio::BulkAck>>(std::move(*receipts));
+  auto reader = wire::make_reader(
+      radio_, wire::topics::kBulk, strand_,
+      [this](const radio::BulkPiece& sample, const wire::SampleInfo& info) { take(sample, info); });
+  if (!reader) return reader.error();
+  reader_ = std::move(*reader);
+  return {};
+}
+
+void Content::take(const radio::BulkPiece& sample, const wire::SampleInfo& info) {
+  // Only the robot itself adds to its map and findings: Fleet::speaks_for would also take a participant that
+  // is not known yet.
+  const RobotView* robot = fleet_.robot(sample.robot());
+  if (!presence_.up() || !robot || robot->participant != info.sender) return;
+  pieces_.take(
+      {sample.robot(), sample.session(), sample.id(), sample.kind(), sample.waiting(), sample.data()});
+}
+
+void Content::acknowledge() {
+  if (!presence_.up() || !params_.content || fleet_.robots().empty()) return;
+  const wire::LinkProfile* link = radio_.sender().link;
+  const double bandwidth = link ? link->bandwidth : 0.0;
+  const auto receipts = pieces_.due(bandwidth);
+  if (!receipts) return;
+  radio::BulkAck ack;
+  ack.station(params_.name);
+  ack.station_id(params_.id);
+  ack.start(map_.start());
+  for (const auto& [robot, receipt] : *receipts)
+    ack.receipts().push_back(transfer::to_message<radio::BulkReceipt>(robot, receipt));
+  if (look_ && strand_.now() - looked_ < kLookHolds)
+    ack.look({static_cast<float>(look_->x), static_cast<float>(look_->y), static_cast<float>(look_->radius)});
+  if (const auto digests = carrier_heard()
+                               ? digests_.due(map_.chunks(), receipts->size(), bandwidth, strand_.now())
+                               : std::nullopt) {
+    ack.all_digests(digests->all);
+    for (const transfer::ContentDigest& digest : digests->list) ack.digests().push_back(to_radio(digest));
+  }
+  (void)receipts_->write(ack);  // Best effort: a receipt has what those before it had.
+}
+
+bool Content::carrier_heard() const {
+  const auto& robots = fleet_.robots();
+  return std::any_of(robots.begin(), robots.end(), [this](const auto& entry) {
+    const RobotView& robot = entry.second;
+    return strand_.now() - robot.last_heard < kCarrierHeard &&
+           std::find(robot.services.begin(), robot.services.end(), wire::topics::kCarryService) !=
+               robot.services.end();
+  });
+}
+
+void Content::forget_maps() {
+  map_.forget(drawn_start());
+  prior.reset();
+}
+
+std::uint32_t Content::drawn_start() {
+  return static_cast<std::uint32_t>(Random(params_.seed).fork(kStartSalt + starts_++).next()) | 1U;
+}
+
+void Content::warn(const std::string& code, const std::string& text) {
+  fleet_.say({.level = Level::warning, .code = code, .text = command::clean(text, 240)}, strand_.now());
+}
+
+FindingDesk::Outputs Content::desk_outputs() {
+  return {[this](const findings::Finding& f) {
+            book_.add(f.key);
+            fleet_.say(
+                {.robot = f.key.robot,
+                 .code = "found",
+                 .text = f.key.robot + " found " + command::clean(f.kind, findings::Finding::kKind) +
+                         (f.text.empty() ? "" : ": " + command::clean(f.text, findings::Finding::kText))},
+                strand_.now());
+          },
+          [this](const std::string& code, const std::string& text) { warn(code, text); }};
+}
+
+}  // namespace adit::station

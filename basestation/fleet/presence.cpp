@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/fleet/presence.hpp"
+
+#include <utility>
+
+#include "adit/discovery.h"
+#include "adit/link.h"
+#include "core/command/words.hpp"
+#include "core/wire/typed.hpp"
+
+namespace adit::station {
+
+using namespace std::chrono_literals;
+
+namespace {
+constexpr std::uint16_t kProtocol = 1;
+constexpr Duration kReportPeriod = 2s;
+constexpr std::size_t kMaxReportTopics = 16;
+constexpr std::size_t kMaxTimers = 31;  // Then further peers hear the periodic announcement only.
+}  // namespace
+
+struct Presence::Topics {
+  wire::Writer<radio::Presence> presence{};
+  wire::Writer<radio::Capabilities> capabilities{};
+  wire::Writer<radio::LinkReport> report{};
+};
+
+Presence::Presence(const StationParams& params, Executor& strand, wire::Participant& radio, Fleet& fleet,
+                   Random& random)
+    : params_(params),
+      strand_(strand),
+      radio_(radio),
+      fleet_(fleet),
+      random_(random),
+      topics_(std::make_unique<Topics>()) {}
+
+Presence::~Presence() = default;
+
+Result<void> Presence::open() {
+  auto presence = wire::Writer<radio::Presence>::make(radio_, wire::topics::kPresence);
+  if (!presence) return presence.error();
+  auto capabilities = wire::Writer<radio::Capabilities>::make(radio_, wire::topics::kCapabilities);
+  if (!capabilities) return capabilities.error();
+  auto report = wire::Writer<radio::LinkReport>::make(radio_, wire::topics::kLinkReport);
+  if (!report) return report.error();
+  *topics_ = {std::move(*presence), std::move(*capabilities), std::move(*report)};
+  return {};
+}
+
+Result<void> Presence::start() {
+  radio::Capabilities self;
+  self.name(params_.name);
+  self.kind(radio::AGENT_STATION);
+  self.id(params_.id);
+  self.protocol(kProtocol);
+  self.software(params_.software);
+  if (params_.place) {
+    self.placed(true);
+    self.place(*params_.place);
+    fleet_.stand_at(*params_.place);
+    const auto& [x, y, z] = *params_.place;
+    radio_.set_place(radio_.id(), {x, y, z});
+  }
+  if (auto written = topics_->capabilities.write(self); !written) return written.error();
+  announce();
+
+  // The participant may store this handler longer than the station exists.
+  radio_.on_participant(strand_, [this, alive = std::weak_ptr(alive_)](const wire::ParticipantEvent& event) {
+    if (alive.expired() || !event.present) return;
+    if (event.incompatible.empty()) return announce_often();
+    fleet_.say(
+        {.level = Level::warning, .code = "other_release", .text = command::clean(event.incompatible, 240)},
+        strand_.now());
+  });
+  // Random phases, so that stations that start together do not send at the same time.
+  timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(params_.presence)), [this] {
+    timers_.push_back(strand_.every(params_.presence, [this] { announce(); }));
+  }));
+  timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(kReportPeriod)), [this] {
+    timers_.push_back(strand_.every(kReportPeriod, [this] { report_traffic(); }));
+  }));
+  return {};
+}
+
+void Presence::go_up() {
+  up_ = true;
+  announce();
+}
+
+void Presence::announce() {
+  if (!up_) return;
+  radio::Presence presence;
+  presence.name(params_.name);
+  presence.kind(radio::AGENT_STATION);
+  presence.id(params_.id);
+  presence.protocol(kProtocol);
+  presence.seq(++presence_seq_);
+  fleet_.said_present(presence_seq_, strand_.now());
+  (void)topics_->presence.write(presence);  // The next one follows within 1 s.
+}
+
+void Presence::announce_often() {
+  announce();
+  // Presence is best effort.
+  std::erase_if(timers_, [](const Timer& timer) { return !timer.active(); });
+  if (timers_.size() > kMaxTimers) return;
+  for (const Duration delay : {100ms, 300ms, 700ms})
+    timers_.push_back(strand_.after(delay, [this] { announce(); }));
+}
+
+void Presence::report_traffic() {
+  TrafficView view = meter_.read(params_.name, radio_.counters(), radio_.sender(), strand_.now());
+  fleet_.carried(radio_.peers(), strand_.now());
+  radio::LinkReport report;
+  report.agent(params_.name);
+  report.discovery_out(view.discovery_out);
+  report.discovery_in(view.discovery_in);
+  report.total_out(view.total_out);
+  report.total_in(view.total_in);
+  report.malformed(view.malformed);
+  report.link(view.sender.link);
+  report.bandwidth(static_cast<float>(view.sender.bandwidth));
+  report.queue(static_cast<float>(view.sender.queue));
+  report.dropped(view.sender.dropped);
+  report.seq(++report_seq_);
+  for (const TopicRate& rate : view.topics) {
+    if (report.topics().size() == kMaxReportTopics) break;
+    radio::TopicTraffic row;
+    row.topic(rate.topic);
+    row.bytes_out(rate.bytes_out);
+    row.samples_out(rate.samples_out);
+    row.bytes_in(rate.bytes_in);
+    row.samples_in(rate.samples_in);
+    row.dropped(rate.dropped);
+    report.topics().push_back(row);
+  }
+  fleet_.own_traffic(std::move(view));
+  if (up_) (void)topics_->report.write(report);  // Best effort: the next one replaces it.
+}
+
+}  // namespace adit::station
