@@ -58,7 +58,7 @@ bool FindingBook::read(const std::string& text) {
     one.read("robot", key.robot);
     one.read("id", id);
     one.read("number", entry.number);
-    one.read_word("verdict", entry.verdict, Verdict::rejected, [](Verdict v) { return to_string(v); });
+    one.word("verdict", entry.verdict, Verdict::rejected, [](Verdict v) { return to_string(v); });
     one.read("note", entry.note);
     const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), key.id, 16);
     if (!misfit.empty() || error != std::errc() || end != id.data() + id.size() || entry.number == 0)

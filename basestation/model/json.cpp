@@ -2,13 +2,14 @@
 #include "basestation/model/json.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "basestation/model/json_fields.hpp"
 
 namespace adit::station {
 
 using nlohmann::json;
+
+void fields(JsonReader& in, MapTile& tile);
 
 namespace {
 
@@ -50,60 +51,24 @@ json columns_json(const std::vector<VoxelRun>& runs) {
 
 std::string line_of(const json& value) { return value.dump(-1, ' ', true, json::error_handler_t::replace); }
 
-json json_of(const Counts& counts) {
-  return {{"sent", counts.sent},
-          {"repeats", counts.repeats},
-          {"accepted", counts.accepted},
-          {"refused", counts.refused},
-          {"unanswered", counts.unanswered}};
-}
-
-json json_of(const Notice& notice) {
-  return {{"id", notice.id},
-          {"age", notice.age},
-          {"robot", notice.robot},
-          {"operator", notice.operator_name},
-          {"level", to_string(notice.level)},
-          {"code", notice.code},
-          {"reason", name(notice.reason)},
-          {"text", notice.text},
-          {"mine", notice.mine}};
-}
-
-json json_of(const StationSummary& station) {
-  json out{{"station", station.name}, {"self", station.self}, {"age", station.age}, {"lost", station.lost}};
-  if (station.place) out["place"] = *station.place;
-  return out;
-}
-
-json json_of(const AgentRate& rate) { return {{"out", rate.out}, {"in", rate.in}, {"age", rate.age}}; }
+json json_of(const Counts& counts) { return JsonWriter::of(counts); }
+json json_of(const Robot& robot) { return JsonWriter::of(robot); }
+json json_of(const Notice& notice) { return JsonWriter::of(notice); }
+json json_of(const StationSummary& station) { return JsonWriter::of(station); }
+json json_of(const AgentRate& rate) { return JsonWriter::of(rate); }
+json json_of(const CommandEvent& event) { return JsonWriter::of(event); }
 
 json json_of(const World& world) {
-  json out{{"at", world.at},
-           {"station", world.station},
-           {"link", world.link},
-           {"commands", json_of(world.commands)}};
-  out["robots"] = out["stations"] = out["notices"] = json::array();
-  for (const Robot& robot : world.robots) out["robots"].push_back(json_of(robot));
-  for (const StationSummary& station : world.stations) out["stations"].push_back(json_of(station));
-  for (const Notice& notice : world.notices) out["notices"].push_back(json_of(notice));
-  out["traffic"] = json::object();
-  for (const auto& [agent, rate] : world.traffic) out["traffic"][agent] = json_of(rate);
-  return out;
-}
-
-json json_of(const CommandEvent& event) {
-  json out{{"event", "command"},
-           {"id", event.id},
-           {"line", event.line},
-           {"phase", event.ended ? "ended" : "begun"},
-           {"query", event.query},
-           {"mine", event.mine},
-           {"by", {{"front_end", event.front_end}, {"pid", event.pid}}}};
-  if (!event.ended) return out;
-  out["exit"] = event.exit_code;
-  out["text"] = event.text;
-  out["error"] = event.error;
+  json out;
+  JsonWriter io(out);
+  io.field("at", world.at);
+  io.field("station", world.station);
+  io.field("link", world.link);
+  io.field("commands", world.commands);
+  io.field("robots", world.robots);
+  io.field("stations", world.stations);
+  io.field("notices", world.notices);
+  io.field("traffic", world.traffic);
   return out;
 }
 
@@ -127,49 +92,6 @@ json outcome_json(int exit_code, const std::string& text, const std::string& err
   return {{"exit", exit_code}, {"text", text}, {"error", error}, {"json", script}};
 }
 
-void read_fields(JsonReader& in, Counts& counts) {
-  in.read("sent", counts.sent);
-  in.read("repeats", counts.repeats);
-  in.read("accepted", counts.accepted);
-  in.read("refused", counts.refused);
-  in.read("unanswered", counts.unanswered);
-}
-
-void read_fields(JsonReader& in, Notice& notice) {
-  in.read("id", notice.id);
-  in.read("age", notice.age);
-  in.read("robot", notice.robot);
-  in.read("operator", notice.operator_name);
-  in.read_word("level", notice.level, Level::error, [](Level l) { return to_string(l); });
-  in.read("code", notice.code);
-  in.read("reason", notice.reason);
-  in.read("text", notice.text);
-  in.read("mine", notice.mine);
-}
-
-void read_fields(JsonReader& in, StationSummary& station) {
-  in.read("station", station.name);
-  in.read("self", station.self);
-  in.read("age", station.age);
-  in.read("lost", station.lost);
-  in.read("place", station.place);
-}
-
-void read_fields(JsonReader& in, AgentRate& rate) {
-  in.read("out", rate.out);
-  in.read("in", rate.in);
-  in.read("age", rate.age);
-}
-
-void read_fields(JsonReader& in, RobotAnswer& answer) {
-  in.read("robot", answer.robot);
-  in.read("accepted", answer.accepted);
-  in.read("answered", answer.answered);
-  in.read("reason", answer.reason);
-  in.read("text", answer.text);
-  in.read("holder", answer.holder);
-}
-
 /// The times of a tile; those of a station of an earlier release are missing.
 void read_received(JsonReader& in, MapTile& tile) {
   constexpr std::size_t regions = std::size_t{MapTile::kRegions} * MapTile::kRegions;
@@ -183,7 +105,7 @@ void read_received(JsonReader& in, MapTile& tile) {
   if (!tile.received.empty() && tile.received.size() != regions) in.refuse("received");
 }
 
-void read_fields(JsonReader& in, MapTile& tile) {
+void fields(JsonReader& in, MapTile& tile) {
   constexpr std::size_t cells = std::size_t{MapTile::kSide} * MapTile::kSide;
   in.read("x", tile.x);
   in.read("y", tile.y);
@@ -242,26 +164,9 @@ Result<World> world_from(const json& object) {
   return world;
 }
 
+Result<Robot> robot_from(const json& object) { return value_from<Robot>(object, "a robot's"); }
 Result<CommandEvent> event_from(const json& object) {
-  CommandEvent event;
-  std::string wrong, phase;
-  JsonReader in(object, wrong);
-  in.read("id", event.id);
-  in.read("phase", phase);
-  event.ended = phase == "ended";
-  in.read("line", event.line);
-  in.read("query", event.query);
-  in.read("mine", event.mine);
-  if (in.has("by")) {
-    JsonReader by(object.at("by"), wrong);
-    by.read("front_end", event.front_end);
-    by.read("pid", event.pid);
-  }
-  in.read("exit", event.exit_code);
-  in.read("text", event.text);
-  in.read("error", event.error);
-  if (!wrong.empty()) return malformed("a command event's", wrong);
-  return event;
+  return value_from<CommandEvent>(object, "a command event's");
 }
 
 Result<CommandOutcome> outcome_from(const json& object) {

@@ -20,6 +20,9 @@ namespace adit::station {
 class JsonReader {
  public:
   static constexpr std::size_t kMaxElements = 100'000;
+  static constexpr bool kReads = true;
+  template <class T>
+  using Value = T;
 
   /// `wrong`: receives the key that does not fit; empty before.
   JsonReader(const nlohmann::json& object, std::string& wrong) : object_(object), wrong_(wrong) {
@@ -33,6 +36,10 @@ class JsonReader {
   void read(const char* key, T& out) {
     const auto found = object_.is_object() ? object_.find(key) : object_.end();
     if (found != object_.end() && !take(*found, out)) refuse(key);
+  }
+  template <class T>
+  void field(const char* key, T& out) {
+    read(key, out);
   }
   /// The elements of an array; `take` returns whether an element fits.
   template <class Take>
@@ -82,13 +89,13 @@ class JsonReader {
     out = static_cast<T>(value.get<std::int64_t>());
     return true;
   }
-  /// A value of several keys, which its read_fields() reads (model/json_fields.hpp).
+  /// A value of several keys, which its fields() lists (model/json_fields.hpp).
   template <class T>
-  requires requires(JsonReader& in, T& out) { read_fields(in, out); }
+  requires requires(JsonReader& in, T& out) { fields(in, out); }
   static bool take(const nlohmann::json& value, T& out) {
     std::string wrong;
     JsonReader in(value, wrong);
-    read_fields(in, out);
+    fields(in, out);
     return wrong.empty();
   }
   /// An unset value is written as null, or left out.
@@ -121,7 +128,7 @@ class JsonReader {
   }
   /// One of the words that `to_string` gives for 0, 1, ...
   template <class Enum, class ToString>
-  void read_word(const char* key, Enum& out, Enum last, const ToString& to_string) {
+  void word(const char* key, Enum& out, Enum last, const ToString& to_string) {
     std::string word;
     read(key, word);
     if (word.empty()) return;
@@ -132,10 +139,103 @@ class JsonReader {
       }
     refuse(key);
   }
+  /// One of two words.
+  void flag(const char* key, bool& out, const char* word_if_not, const char* word_if) {
+    word(key, out, true, [&](bool value) { return value ? word_if : word_if_not; });
+  }
+  /// An amount of which null means unknown, 0.
+  void known(const char* key, float& amount) {
+    read(key, amount);
+    if (std::isnan(amount)) amount = 0.0F;
+  }
+  /// Values that form one array; all 0 where the key is missing.
+  template <class... T>
+  void list(const char* key, T&... out) {
+    std::array<std::common_type_t<T...>, sizeof...(T)> values{};
+    read(key, values);
+    std::size_t i = 0;
+    ((out = values[i++]), ...);
+  }
+  /// The keys of an object within this one.
+  template <class Each>
+  void object(const char* key, const Each& each_key) {
+    if (!has(key)) return;
+    JsonReader in(object_.at(key), wrong_);
+    each_key(in);
+  }
 
  private:
   const nlohmann::json& object_;
   std::string& wrong_;
+};
+
+/// Writes the keys of one JSON object. Its calls have the names of JsonReader's, so that one function lists
+/// the keys of a value for both.
+class JsonWriter {
+ public:
+  static constexpr bool kReads = false;
+  template <class T>
+  using Value = const T;
+
+  explicit JsonWriter(nlohmann::json& object) : object_(object) {
+    if (object.is_null()) object = nlohmann::json::object();
+  }
+
+  template <class T>
+  void field(const char* key, const T& value) {
+    object_[key] = of(value);
+  }
+  template <class Enum, class ToString>
+  void word(const char* key, Enum value, Enum, const ToString& to_string) {
+    object_[key] = to_string(value);
+  }
+  void flag(const char* key, bool value, const char* word_if_not, const char* word_if) {
+    object_[key] = value ? word_if : word_if_not;
+  }
+  void known(const char* key, float amount) {
+    object_[key] = amount > 0.0F ? nlohmann::json(amount) : nlohmann::json();
+  }
+  template <class... T>
+  void list(const char* key, const T&... values) {
+    object_[key] = {values...};
+  }
+  template <class Each>
+  void object(const char* key, const Each& each_key) {
+    JsonWriter out(object_[key]);
+    each_key(out);
+  }
+
+  template <class T>
+  static nlohmann::json of(const T& value) {
+    if constexpr (requires(JsonWriter & out) { fields(out, value); }) {
+      nlohmann::json object;
+      JsonWriter out(object);
+      fields(out, value);
+      return object;
+    } else {
+      return value;
+    }
+  }
+  static nlohmann::json of(const Reason& reason) { return name(reason); }
+  template <class T>
+  static nlohmann::json of(const std::optional<T>& value) {
+    return value ? of(*value) : nlohmann::json();
+  }
+  template <class T>
+  static nlohmann::json of(const std::vector<T>& values) {
+    nlohmann::json out = nlohmann::json::array();
+    for (const T& value : values) out.push_back(of(value));
+    return out;
+  }
+  template <class T>
+  static nlohmann::json of(const std::map<std::string, T>& values) {
+    nlohmann::json out = nlohmann::json::object();
+    for (const auto& [key, value] : values) out[key] = of(value);
+    return out;
+  }
+
+ private:
+  nlohmann::json& object_;
 };
 
 /// Reads a value of several keys. Error: malformed, "WHAT 'KEY' does not fit".
@@ -144,7 +244,7 @@ Result<T> value_from(const nlohmann::json& object, const char* what) {
   T value;
   std::string wrong;
   JsonReader in(object, wrong);
-  read_fields(in, value);
+  fields(in, value);
   if (!wrong.empty()) return {Reason::malformed, std::string(what) + " '" + wrong + "' does not fit"};
   return value;
 }

@@ -63,11 +63,10 @@ void read_as_connection(const char* data, std::size_t size) {
 }
 
 void read_as_report(const std::string& text) {
-  const auto object = nlohmann::json::parse(text, nullptr, false);
-  if (!object.is_object()) return;
-  if (const auto health = value_from<HealthReport>(object, "health")) (void)line_of(json_of(*health));
-  if (const auto network = value_from<NetworkReport>(object, "network")) (void)line_of(json_of(*network));
-  if (const auto found = value_from<FoundReport>(object, "findings")) (void)line_of(json_of(*found));
+  const CommandOutcome outcome{.json = text};
+  if (const auto health = health_of(outcome)) (void)line_of(json_of(*health));
+  if (const auto network = network_of(outcome)) (void)line_of(json_of(*network));
+  if (const auto found = findings_of(outcome)) (void)line_of(json_of(*found));
 }
 
 /// Messages of a real station, from which libFuzzer goes on.
