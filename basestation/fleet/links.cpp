@@ -28,21 +28,37 @@ const PeerRate* PeerRates::find(const wire::ParticipantId& peer) const {
   return found == peers_.end() || !found->second.rate ? nullptr : &*found->second.rate;
 }
 
-std::vector<LinkView> links(const Fleet& fleet, Time now) {
-  std::vector<LinkView> result;
+SenderReport described(const SenderView& sender) {
+  SenderReport out{.link = sender.link,
+                   .bandwidth = sender.bandwidth,
+                   .queue = sender.queue,
+                   .state_rate = sender.state_rate};
+  for (std::size_t p = 0; p < wire::kPriorities; ++p) out.dropped[priority_name(p)] = sender.dropped[p];
+  return out;
+}
+
+std::vector<LinkReport> links(const Fleet& fleet, Time now) {
+  std::vector<LinkReport> result;
   for (const wire::PeerMeter::Peer& peer : fleet.links().peers(now)) {
-    LinkView& view = result.emplace_back(LinkView{peer, {}, {}, {}});
+    LinkReport& link = result.emplace_back(LinkReport{.agent = peer.name,
+                                                      .age = seconds(peer.held),
+                                                      .lost_from = peer.lost,
+                                                      .round_trip = peer.round_trip});
     const RobotView* robot = fleet.robot(peer.name);
     const auto station = fleet.stations().find(peer.name);
     const PeerRate* rate = robot != nullptr ? fleet.peer_rates().find(robot->participant)
                            : station != fleet.stations().end()
                                ? fleet.peer_rates().find(station->second.participant)
                                : nullptr;
-    if (rate != nullptr) view.rate = *rate;
+    if (rate != nullptr) {
+      link.bytes_from = rate->in;
+      link.bytes_to = rate->out;
+      link.signal = rate->signal;
+    }
     const auto report = fleet.traffic().find(peer.name);
     if (report == fleet.traffic().end()) continue;
-    if (report->second.lost_there >= 0.0F) view.lost_to = report->second.lost_there;
-    view.sender = report->second.sender;
+    if (report->second.lost_there >= 0.0F) link.lost_to = report->second.lost_there;
+    link.sender = described(report->second.sender);
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "basestation/model/network.hpp"
 #include "core/wire/link/peer_meter.hpp"
 #include "core/wire/link_state.hpp"
 
@@ -45,16 +46,10 @@ struct SenderView {
   double state_rate{};                                     ///< Rate of RobotState, Hz.
 };
 
-/// The state of the link to one agent, measured here and reported by the agent.
-struct LinkView {
-  wire::PeerMeter::Peer peer{};     ///< Loss from the agent, and round-trip time.
-  std::optional<double> lost_to{};  ///< Fraction of this station's heartbeats that the agent missed, [0, 1].
-  std::optional<PeerRate> rate{};   ///< To the agent and from it.
-  std::optional<SenderView> sender{};  ///< Unset before its first report.
-};
-
 /// The links to all agents whose heartbeats were heard, by name.
-std::vector<LinkView> links(const Fleet& fleet, Time now);
+std::vector<LinkReport> links(const Fleet& fleet, Time now);
+/// What front ends receive of an agent's report.
+SenderReport described(const SenderView& sender);
 
 /// Readable name of a priority's traffic.
 const char* priority_name(std::size_t priority);

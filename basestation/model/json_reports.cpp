@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/model/json_reports.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "basestation/model/exit_code.hpp"
 #include "basestation/model/json_fields.hpp"
 #include "core/command/vocabulary.hpp"
@@ -10,31 +13,14 @@ namespace adit::station {
 using nlohmann::json;
 
 const char* word(ComponentPhase phase) {
-  switch (phase) {
-    case ComponentPhase::starting:
-      return "starting";
-    case ComponentPhase::up:
-      return "up";
-    case ComponentPhase::waiting:
-      return "waiting";
-    case ComponentPhase::failed:
-      return "FAILED";
-    case ComponentPhase::hung:
-      return "HUNG";
-  }
-  return "FAILED";
+  constexpr std::array kWords{"starting", "up", "waiting", "FAILED", "HUNG"};
+  const auto index = static_cast<std::size_t>(phase);
+  return index < kWords.size() ? kWords[index] : "FAILED";
 }
 
 const char* to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::open:
-      return "open";
-    case Verdict::confirmed:
-      return "confirmed";
-    case Verdict::rejected:
-      break;
-  }
-  return "rejected";
+  constexpr std::array kWords{"open", "confirmed", "rejected"};
+  return kWords[std::min(static_cast<std::size_t>(verdict), kWords.size() - 1)];
 }
 
 template <class Io>

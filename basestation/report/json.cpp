@@ -36,45 +36,14 @@ json answer_json(const Answer& answer) {
 
 namespace {
 
-const char* to_string(command::Type type) {
-  switch (type) {
-    case command::Type::robots:
-      return "robots";
-    case command::Type::name:
-      return "name";
-    case command::Type::file:
-      return "file";
-    case command::Type::choice:
-      return "choice";
-    case command::Type::number:
-      return "number";
-    case command::Type::text:
-      return "text";
-    case command::Type::command:
-      return "command";
-    case command::Type::keyword:
-      return "keyword";
-    case command::Type::none:
-      break;
-  }
-  return "none";
-}
-
-const char* to_string(command::Danger danger) {
-  switch (danger) {
-    case command::Danger::none:
-      return "none";
-    case command::Danger::some:
-      return "some";
-    case command::Danger::high:
-      break;
-  }
-  return "high";
-}
+/// In the order of command::Type and command::Danger.
+constexpr std::array kTypes{"none",   "robots", "name",    "file",   "choice",
+                            "number", "text",   "command", "keyword"};
+constexpr std::array kDangers{"none", "some", "high"};
 
 json argument_json(const command::Argument& argument) {
   json out{{"name", argument.name},
-           {"type", to_string(argument.type)},
+           {"type", kTypes.at(static_cast<std::size_t>(argument.type))},
            {"least", argument.min_count},
            {"most", argument.max_count}};
   if (!argument.choices.empty()) out["choices"] = command::choices(argument);
@@ -102,9 +71,12 @@ json info_json(const Action& action) {
     options.push_back({{"name", option.name}, {"values", values}});
   }
   const command::Argument& robots = info.arguments[0];
-  return {{"arguments", arguments},           {"options", options},
-          {"danger", to_string(info.danger)}, {"robots_min", robots.min_count},
-          {"robots_max", robots.max_count},   {"all_robots", robots.all != command::AllRobots::refused},
+  return {{"arguments", arguments},
+          {"options", options},
+          {"danger", kDangers.at(static_cast<std::size_t>(info.danger))},
+          {"robots_min", robots.min_count},
+          {"robots_max", robots.max_count},
+          {"all_robots", robots.all != command::AllRobots::refused},
           {"usage", command::usage(info)}};
 }
 
@@ -121,34 +93,6 @@ json actions_json(const std::vector<Action>& actions) {
   }
   return rows;
 }
-
-namespace {
-
-SenderReport report_of(const SenderView& sender) {
-  SenderReport out{.link = sender.link,
-                   .bandwidth = sender.bandwidth,
-                   .queue = sender.queue,
-                   .state_rate = sender.state_rate};
-  for (std::size_t p = 0; p < wire::kPriorities; ++p) out.dropped[priority_name(p)] = sender.dropped[p];
-  return out;
-}
-
-LinkReport report_of(const LinkView& link) {
-  LinkReport out{.agent = link.peer.name,
-                 .age = seconds(link.peer.held),
-                 .lost_from = link.peer.lost,
-                 .lost_to = link.lost_to,
-                 .round_trip = link.peer.round_trip};
-  if (link.rate) {
-    out.bytes_from = link.rate->in;
-    out.bytes_to = link.rate->out;
-    out.signal = link.rate->signal;
-  }
-  if (link.sender) out.sender = report_of(*link.sender);
-  return out;
-}
-
-}  // namespace
 
 namespace {
 
@@ -192,9 +136,9 @@ NetworkReport network_report(const Fleet& fleet, Time now) {
                              .topics = traffic.topics,
                              .classes_out = classes_out(traffic),
                              .hears = traffic.hears});
-  for (const LinkView& link : links(fleet, now)) report.links.push_back(report_of(link));
+  report.links = links(fleet, now);
   const auto own = fleet.traffic().find(fleet.own_name());
-  if (own != fleet.traffic().end()) report.sender = report_of(own->second.sender);
+  if (own != fleet.traffic().end()) report.sender = described(own->second.sender);
   return report;
 }
 

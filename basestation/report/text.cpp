@@ -147,16 +147,16 @@ std::string links_text(const Fleet& fleet, Time now) {
   std::vector<std::vector<std::string>> rows{{"LINK TO", "HEARD S AGO", "LOST FROM %", "LOST TO %",
                                               "ROUND TRIP MS", "B/S FROM", "B/S TO", "QUEUE MS", "STATE HZ",
                                               "SIGNAL DBM", "LINK"}};
-  for (const LinkView& link : links(fleet, now)) {
+  for (const LinkReport& link : links(fleet, now)) {
     const bool limited = link.sender && !link.sender->link.empty();
     const bool states = link.sender && link.sender->state_rate > 0.0;
     rows.push_back(
-        {link.peer.name, fixed(seconds(link.peer.held), 1), fixed(link.peer.lost * 100.0, 0),
+        {link.agent, fixed(link.age, 1), fixed(link.lost_from * 100.0, 0),
          link.lost_to ? fixed(*link.lost_to * 100.0, 0) : "-",
-         link.peer.round_trip ? ms_text(*link.peer.round_trip) : "-",
-         link.rate ? fixed(link.rate->in, 0) : "-", link.rate ? fixed(link.rate->out, 0) : "-",
+         link.round_trip ? ms_text(*link.round_trip) : "-",
+         link.bytes_from ? fixed(*link.bytes_from, 0) : "-", link.bytes_to ? fixed(*link.bytes_to, 0) : "-",
          limited ? ms_text(link.sender->queue) : "-", states ? fixed(link.sender->state_rate, 1) : "-",
-         link.rate && link.rate->signal ? fixed(*link.rate->signal, 0) : "-",
+         link.signal ? fixed(*link.signal, 0) : "-",
          limited ? link.sender->link + " " + fixed(link.sender->bandwidth / 1e3, 0) + " kbit/s" : "-"});
   }
   std::string out = table(rows);
