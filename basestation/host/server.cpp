@@ -9,6 +9,7 @@
 #include <sys/un.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -234,15 +235,12 @@ void Server::ask_map(std::uint64_t number, Client& client, const json& wanted) {
   JsonReader in(wanted, misfit);
   in.read("run", run);
   in.read("revision", revision);
-  if (!misfit.empty()) return answer(client, {{"wrong", "the map's '" + misfit + "' does not fit"}});
+  std::array<double, 3> place{};
+  in.read("look", place);
   std::optional<LookedAt> look;
-  if (const auto found = wanted.find("look"); found != wanted.end()) {
-    const auto is_number = [](const json& value) { return value.is_number(); };
-    if (!found->is_array() || found->size() != 3 || !std::all_of(found->begin(), found->end(), is_number))
-      return answer(client, {{"wrong", "the map's 'look' does not fit"}});
-    look = LookedAt{(*found)[0], (*found)[1], (*found)[2]};
-    if (!valid(*look)) return answer(client, {{"wrong", "the map's 'look' does not fit"}});
-  }
+  if (in.has("look")) look = LookedAt{place[0], place[1], place[2]};
+  if (look && !valid(*look)) in.refuse("look");
+  if (!misfit.empty()) return answer(client, {{"wrong", "the map's '" + misfit + "' does not fit"}});
   if (run != run_) revision = 0;  // Revisions of an earlier run mean nothing.
   client.map_asked = strand_->post([this, number, revision, look] {
     if (look) station_->look_at(*look);
@@ -270,7 +268,7 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& lin
       newest_world_.reset();
     }
     client.sent.reset();  // It gets the whole state, also if it asks again.
-    return ask_change();
+    return void(ask_world());
   }
   if (request.contains("notices")) return void(client.notices = true);
   if (const auto name = request.find("front_end"); name != request.end()) {
@@ -296,13 +294,14 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& lin
   }
   const std::int64_t id = integer("id");
   if (id <= 0) return wrong("an id above 0 was expected");
-  if (const auto stick = request.find("stick"); stick != request.end()) {
-    const bool numbers =
-        stick->is_array() && stick->size() == 3 &&
-        std::all_of(stick->begin(), stick->end(), [](const json& v) { return v.is_number(); });
-    if (!numbers) return wrong("a stick has three numbers");
-    const auto axis = [&](std::size_t i) { return std::clamp((*stick)[i].get<double>(), -20.0, 20.0); };
-    const StickVelocity velocity{axis(0), axis(1), axis(2)};
+  if (request.contains("stick")) {
+    std::array<double, 3> stick{};
+    std::string misfit;
+    JsonReader(request, misfit).read("stick", stick);
+    if (!misfit.empty() || std::any_of(stick.begin(), stick.end(), [](double v) { return std::isnan(v); }))
+      return wrong("a stick has three numbers");
+    for (double& axis : stick) axis = std::clamp(axis, -20.0, 20.0);
+    const StickVelocity velocity{stick[0], stick[1], stick[2]};
     const auto found = client.open.find(id);
     if (found != client.open.end())
       strand_->post([station = station_, h = found->second, velocity] { station->stick(*h, velocity); });
@@ -345,22 +344,21 @@ void Server::deliver(const Reply& reply) {
 
 void Server::deliver() {
   std::vector<Reply> replies;
-  std::optional<World> snapshot, changed;
+  std::optional<World> world;
   std::size_t lost = 0;
   {
     const std::lock_guard guard(mutex_);
     replies.swap(replies_);
-    snapshot.swap(snapshot_);
-    changed.swap(changed_);
+    world.swap(world_);
     handed_over_ = 0;
     lost = std::exchange(lost_, 0);
   }
   for (const Reply& next : replies) deliver(next);
-  const std::string text = snapshot ? line_of({{"snapshot", json_of(*snapshot)}}) : "";
-  if (snapshot) snapshot_asked_ = false;
-  if (changed) {
-    newest_ = std::make_shared<const EncodedWorld>(encoded(*changed));
-    newest_world_ = std::move(changed);
+  const bool snapshot = world && std::exchange(snapshot_asked_, false);
+  const std::string text = snapshot ? line_of({{"snapshot", json_of(*world)}}) : "";
+  if (world && followers_ > 0) {
+    newest_ = std::make_shared<const EncodedWorld>(encoded(*world));
+    newest_world_ = std::move(world);
   }
   for (auto& [number, client] : clients_) {
     if (client.cut_off) continue;
@@ -370,17 +368,19 @@ void Server::deliver() {
 }
 
 void Server::changed(const Station& station) {
-  if (followers_ == 0) return;
-  World world = world_of(station);
+  if (followers_ > 0) take(world_of(station));
+}
+
+void Server::take(World world) {
   {
     const std::lock_guard guard(mutex_);
-    changed_ = std::move(world);
+    world_ = std::move(world);
   }
   wake();
 }
 
-void Server::ask_change() {
-  strand_->post([this] { changed(*station_); });
+bool Server::ask_world() {
+  return strand_->post([this] { take(world_of(*station_)); });
 }
 
 bool Server::follow(Client& client, Clock::time_point now) {
@@ -404,20 +404,6 @@ bool Server::follow(Client& client, Clock::time_point now) {
   client.sent = newest_;
   client.sent_at = now;
   return false;
-}
-
-void Server::ask_snapshot() {
-  const bool wanted =
-      std::any_of(clients_.begin(), clients_.end(), [](const auto& c) { return c.second.watches; });
-  if (!wanted || snapshot_asked_) return;
-  snapshot_asked_ = strand_->post([this] {
-    World snapshot = world_of(*station_);
-    {
-      const std::lock_guard guard(mutex_);
-      snapshot_ = std::move(snapshot);
-    }
-    wake();
-  });
 }
 
 void Server::read(std::uint64_t number, Client& client) {
@@ -471,11 +457,13 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
       if (!push(client)) gone.push_back(number);
     for (const std::uint64_t number : gone) drop(number);
     if (now >= next_snapshot) {
-      ask_snapshot();
+      const bool wanted =
+          std::any_of(clients_.begin(), clients_.end(), [](const auto& c) { return c.second.watches; });
+      if (wanted && !snapshot_asked_) snapshot_asked_ = ask_world();
       next_snapshot = now + std::chrono::milliseconds(kSnapshotPeriodMs - 10);
     }
     if (followers_ > 0 && now >= next_sign) {
-      ask_change();
+      ask_world();
       next_sign = now + kSignOfLife;
     }
   }

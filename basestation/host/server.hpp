@@ -116,8 +116,9 @@ class Server {
   void cut_off(Client& client, const std::string& why);
   void cancel_all(Client& client);
   void drop(std::uint64_t number);
-  void ask_snapshot();
-  void ask_change();
+  /// Asks the strand for the state; returns false if it has too much to do.
+  bool ask_world();
+  void take(World world);
   /// Sends a client that follows what it does not have, if that is due. Returns whether something is left.
   bool follow(Client& client, std::chrono::steady_clock::time_point now);
 
@@ -143,8 +144,7 @@ class Server {
   std::vector<Reply> replies_{};
   std::size_t handed_over_{};  // Notices and events in `replies_`.
   std::size_t lost_{};         // Notices and events that were dropped.
-  std::optional<World> snapshot_{};
-  std::optional<World> changed_{};
+  std::optional<World> world_{};
 };
 
 }  // namespace adit::station::host
