@@ -14,7 +14,7 @@ namespace {
 
 using testing::ElementsAre;
 
-struct Failures {
+struct LiveFailures {
   std::mutex mutex{};
   std::vector<std::string> lines{};
   std::vector<std::string> seen() {
@@ -106,7 +106,7 @@ TEST(LiveRuntime, cancelled_timers_never_run) {
 }
 
 TEST(LiveRuntime, drops_counts_and_reports_what_does_not_fit) {
-  Failures failures;
+  LiveFailures failures;
   LiveParams params = failures.params();
   params.queue = 10;
   LiveRuntime runtime(params);
@@ -132,7 +132,7 @@ TEST(LiveRuntime, drops_counts_and_reports_what_does_not_fit) {
 }
 
 TEST(LiveRuntime, reports_exceptions_of_tasks_timers_and_work_and_goes_on) {
-  Failures failures;
+  LiveFailures failures;
   LiveRuntime runtime(failures.params());
   const auto strand = runtime.strand("s");
   strand->post([] { throw std::runtime_error("task"); });
@@ -195,7 +195,7 @@ TEST(LiveRuntime, dropping_a_strand_joins_and_drops_what_waits) {
 }
 
 TEST(LiveRuntime, a_strand_outlives_its_runtime) {
-  Failures failures;
+  LiveFailures failures;
   auto runtime = std::make_unique<LiveRuntime>(failures.params());
   const auto strand = runtime->strand("s");
   runtime.reset();
@@ -231,7 +231,7 @@ TEST(LiveRuntime, ends_in_bounded_time_though_work_hangs) {
 }
 
 TEST(LiveRuntime, control_posts_run_though_the_queue_is_full) {
-  Failures failures;
+  LiveFailures failures;
   LiveParams params = failures.params();
   params.queue = 1;
   LiveRuntime runtime(params);
