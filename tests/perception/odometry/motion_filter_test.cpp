@@ -7,7 +7,7 @@ namespace adit::perception {
 namespace {
 
 constexpr std::uint64_t kBegin = 1'000'000'000'000;  // ns
-constexpr std::uint64_t kMs = 1'000'000;
+constexpr std::uint64_t kMillisecond = 1'000'000;
 
 /// A body that drives a circle at 1 m/s and 0.5 rad/s, 2 m in radius.
 struct Circle {
@@ -37,7 +37,7 @@ void drive(MotionFilter& filter, double from, double to, bool imu, double wheel_
     if (wheel_scale > 0 && n % 2 == 0) {
       Pose3 pose = Circle::at(t);
       pose.position *= wheel_scale;
-      filter.add(BodyMotion{kBegin + static_cast<std::uint64_t>(n) * 10 * kMs, pose});
+      filter.add(BodyMotion{kBegin + static_cast<std::uint64_t>(n) * 10 * kMillisecond, pose});
     }
   }
 }
@@ -49,7 +49,7 @@ double error(const MotionFilter& filter, double t) {
 TEST(MotionFilter, FollowsTheImu) {
   MotionFilter filter = started({.has_wheels = false});
   drive(filter, 0, 4, true, 0);
-  filter.advance(kBegin + 4000 * kMs);
+  filter.advance(kBegin + 4000 * kMillisecond);
   EXPECT_LT(error(filter, 4), 0.05);
   EXPECT_NEAR(filter.pose().yaw(), 2.0, 0.01);
 }
@@ -57,7 +57,7 @@ TEST(MotionFilter, FollowsTheImu) {
 TEST(MotionFilter, FollowsTheWheelsWithoutAnImu) {
   MotionFilter filter = started({.has_imu = false});
   drive(filter, 0, 4, false, 1.0);
-  filter.advance(kBegin + 4000 * kMs);
+  filter.advance(kBegin + 4000 * kMillisecond);
   EXPECT_LT(error(filter, 4), 0.05);
   EXPECT_NEAR(filter.velocity().norm(), 1.0, 0.02);
 }
@@ -67,7 +67,7 @@ TEST(MotionFilter, BridgesAGapOfTheImuByTheWheels) {
   drive(filter, 0, 2, true, 1.0);
   drive(filter, 2, 2.5, false, 1.0);
   drive(filter, 2.5, 4, true, 1.0);
-  filter.advance(kBegin + 4000 * kMs);
+  filter.advance(kBegin + 4000 * kMillisecond);
   EXPECT_LT(error(filter, 4), 0.1);
 }
 
@@ -82,9 +82,9 @@ TEST(MotionFilter, DoesNotBelieveASlip) {
     if (n % 2 != 0) continue;
     const Pose3 step = Circle::at(t - 0.02).inverse() * Circle::at(t);
     slipped = slipped * Pose3{2 * step.position, step.orientation};
-    filter.add(BodyMotion{kBegin + static_cast<std::uint64_t>((200 + n) * 10) * kMs, slipped});
+    filter.add(BodyMotion{kBegin + static_cast<std::uint64_t>((200 + n) * 10) * kMillisecond, slipped});
   }
-  filter.advance(kBegin + 2400 * kMs);
+  filter.advance(kBegin + 2400 * kMillisecond);
   EXPECT_LT(error(filter, 2.4), 0.08);  // Twice the way would be 0.4 m off.
 }
 
@@ -94,13 +94,14 @@ TEST(MotionFilter, ABodyAtRestStaysThereForAnHour) {
   for (int s = 0; s < 3600; ++s) {
     for (int n = 1; n <= 10; ++n) {
       const std::uint64_t stamp =
-          kBegin + (static_cast<std::uint64_t>(s) * 1000 + static_cast<std::uint64_t>(n) * 100) * kMs;
+          kBegin +
+          (static_cast<std::uint64_t>(s) * 1000 + static_cast<std::uint64_t>(n) * 100) * kMillisecond;
       for (int k = 9; k >= 0; --k)
-        filter.add(
-            ImuSample{stamp - static_cast<std::uint64_t>(k) * 10 * kMs, {0.004, 0.001, 0}, {0.08, 0, 9.82}});
+        filter.add(ImuSample{
+            stamp - static_cast<std::uint64_t>(k) * 10 * kMillisecond, {0.004, 0.001, 0}, {0.08, 0, 9.82}});
       filter.add(BodyMotion{stamp, Pose3{}});
     }
-    filter.advance(kBegin + static_cast<std::uint64_t>(s + 1) * 1000 * kMs);
+    filter.advance(kBegin + static_cast<std::uint64_t>(s + 1) * 1000 * kMillisecond);
   }
   EXPECT_LT(filter.pose().position.norm(), 0.25);
   EXPECT_LT(filter.velocity().norm(), 0.002);
@@ -110,21 +111,21 @@ TEST(MotionFilter, PosesOutsideOfItsHistoryAreErrors) {
   MotionFilter filter = started({.has_wheels = false});
   EXPECT_FALSE(MotionFilter({}).at(kBegin));
   drive(filter, 0, 2, true, 0);
-  filter.advance(kBegin + 2000 * kMs);
+  filter.advance(kBegin + 2000 * kMillisecond);
   EXPECT_EQ(filter.at(kBegin).error().reason, Reason::out_of_range);
-  EXPECT_TRUE(filter.at(kBegin + 1500 * kMs));
-  EXPECT_TRUE(filter.at(kBegin + 2200 * kMs));
-  EXPECT_EQ(filter.at(kBegin + 2400 * kMs).error().reason, Reason::out_of_range);
+  EXPECT_TRUE(filter.at(kBegin + 1500 * kMillisecond));
+  EXPECT_TRUE(filter.at(kBegin + 2200 * kMillisecond));
+  EXPECT_EQ(filter.at(kBegin + 2400 * kMillisecond).error().reason, Reason::out_of_range);
 }
 
 TEST(MotionFilter, ItsMemoryIsBounded) {
   MotionFilter filter({});
   for (int n = 0; n < 10'000; ++n) {
-    filter.add(ImuSample{kBegin + static_cast<std::uint64_t>(n) * kMs, {0, 0, 0}, {0, 0, 9.81}});
-    filter.add(BodyMotion{kBegin + static_cast<std::uint64_t>(n) * kMs, Pose3{}});
+    filter.add(ImuSample{kBegin + static_cast<std::uint64_t>(n) * kMillisecond, {0, 0, 0}, {0, 0, 9.81}});
+    filter.add(BodyMotion{kBegin + static_cast<std::uint64_t>(n) * kMillisecond, Pose3{}});
   }
   EXPECT_FALSE(filter.started());
-  EXPECT_TRUE(filter.covers(kBegin + 9'999 * kMs));
+  EXPECT_TRUE(filter.covers(kBegin + 9'999 * kMillisecond));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ struct Residuals {
 };
 
 /// Walls beside, floor and ceiling; normals scatter by a degree, as of real planes.
-Residuals corridor(bool with_end) {
+Residuals corridor_residuals(bool with_end) {
   Residuals r;
   Random random(5);
   const auto scatter = [&] {
@@ -43,7 +43,7 @@ Residuals corridor(bool with_end) {
 }
 
 TEST(Observability, ASmoothCorridorLeavesItsAxisOpen) {
-  const Localizability found = corridor(false).judged();
+  const Localizability found = corridor_residuals(false).judged();
   EXPECT_EQ(found.t[0], Observability::none);
   EXPECT_GT(std::abs(found.axes_t.col(0).x()), 0.99);
   EXPECT_EQ(found.t[1], Observability::strong);
@@ -52,7 +52,7 @@ TEST(Observability, ASmoothCorridorLeavesItsAxisOpen) {
 }
 
 TEST(Observability, AnEndWallClosesIt) {
-  const Localizability found = corridor(true).judged();
+  const Localizability found = corridor_residuals(true).judged();
   for (const Observability t : found.t) EXPECT_EQ(t, Observability::strong);
 }
 

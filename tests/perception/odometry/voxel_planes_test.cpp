@@ -11,11 +11,11 @@
 namespace adit::perception {
 namespace {
 
-using Points = std::vector<Eigen::Vector3d>;
+using Vectors = std::vector<Eigen::Vector3d>;
 
 /// Points of a wall x + 0.2 y = 4 with 2 cm of noise.
-Points wall(Random& random, std::size_t count) {
-  Points points;
+Vectors wall(Random& random, std::size_t count) {
+  Vectors points;
   for (std::size_t n = 0; n < count; ++n) {
     const double y = random.uniform(-3, 3), noise = 0.035 * (random.uniform() + random.uniform() - 1.0);
     points.push_back({4 - 0.2 * y + noise, y, random.uniform(0, 2)});
@@ -43,7 +43,7 @@ TEST(VoxelPlanes, FindsAWallAndItsNormal) {
 TEST(VoxelPlanes, FindsAWallOnTheBorderOfTwoVoxelsFromBothSides) {
   VoxelPlanes map({});
   Random random(7);
-  Points points;
+  Vectors points;
   for (int n = 0; n < 2000; ++n) points.push_back({4.0, random.uniform(-2, 2), random.uniform(0, 2)});
   map.insert(points, 1);
   EXPECT_TRUE(map.find({4.05, 0.5, 1.5}));
@@ -54,7 +54,7 @@ TEST(VoxelPlanes, FindsAWallOnTheBorderOfTwoVoxelsFromBothSides) {
 TEST(VoxelPlanes, SinglePointsBeyondTheBorderDoNotHideAWall) {
   VoxelPlanes map({});
   Random random(8);
-  Points points;
+  Vectors points;
   for (int n = 0; n < 2000; ++n)
     points.push_back({3.99 + random.uniform(-0.009, 0.009), random.uniform(-2, 2), random.uniform(0, 2)});
   // A few of them were measured just behind it.
@@ -87,7 +87,7 @@ TEST(VoxelPlanes, OfAWholeCloudFindsTheSameWallInVoxelsOfAllSizes) {
 TEST(VoxelPlanes, OneRingOnAWallIsNoPlane) {
   VoxelPlanes map({});
   Random random(2);
-  Points ring;
+  Vectors ring;
   for (int n = 0; n < 400; ++n) ring.push_back({4.0 + 0.01 * random.uniform(), -2 + 0.01 * n, 1.0});
   for (int cloud = 1; cloud <= 5; ++cloud) map.insert(ring, cloud);
   for (double y = -1.9; y < 1.9; y += 0.1) EXPECT_FALSE(map.find({4, y, 1.0}));
@@ -97,7 +97,7 @@ TEST(VoxelPlanes, AnUprightPoleIsALine) {
   VoxelPlanes map({});
   Random random(3);
   for (int cloud = 1; cloud <= 5; ++cloud) {
-    Points pole;
+    Vectors pole;
     for (int n = 0; n < 60; ++n)
       pole.push_back(
           {2.4 + random.uniform(-0.05, 0.05), 1.4 + random.uniform(-0.05, 0.05), random.uniform(0.05, 0.95)});
@@ -114,7 +114,7 @@ TEST(VoxelPlanes, ForgetsWhatItLeftBehindAndStaysBounded) {
   VoxelPlanes map({.keep_distance = 30.0, .max_voxels = 4000});
   Random random(4);
   for (int step = 0; step < 600; ++step) {
-    Points here;
+    Vectors here;
     for (int n = 0; n < 300; ++n)
       here.push_back(
           {0.5 * step + random.uniform(-4, 4), random.chance(0.5) ? 3.0 : -3.0, random.uniform(0, 2)});

@@ -10,7 +10,7 @@
 namespace adit::perception {
 namespace {
 
-Keyframe wall() {
+Keyframe wall_keyframe() {
   PointCloud points;
   for (float y = -5; y < 5; y += 0.1f)
     for (float z = 0; z < 2; z += 0.2f) points.emplace_back(4.0f, y, z);
@@ -20,7 +20,7 @@ Keyframe wall() {
 }
 
 TEST(Keyframe, KeepsPointsWithinReachToTheMillimetre) {
-  const Keyframe before = wall();
+  const Keyframe before = wall_keyframe();
   ASSERT_GT(before.points.size(), 300U);
   const auto after = decode_keyframe(encode(before));
   ASSERT_TRUE(after.ok()) << after.error().text;
@@ -45,7 +45,7 @@ TEST(Keyframe, OfADenseCloudIsBounded) {
 }
 
 TEST(Keyframe, RefusesDamagedBytes) {
-  const auto good = encode(wall());
+  const auto good = encode(wall_keyframe());
   for (const std::size_t size : {std::size_t{0}, std::size_t{3}, std::size_t{61}, good.size() - 1})
     EXPECT_EQ(decode_keyframe(std::span(good).first(size)).reason(), Reason::malformed) << size;
   Random random(5);
