@@ -13,7 +13,7 @@ namespace adit::nav {
 namespace {
 
 /// A path of `length` metres along x, recorded every few centimetres.
-Trail straight(double length) {
+Trail straight_trail(double length) {
   Trail trail;
   for (double x = 0.0; x <= length + 1e-9; x += 0.07) trail.record({x, 0, 0});
   trail.record({length, 0, 0});
@@ -36,7 +36,7 @@ TEST(ConvoyTrail, ItsPointsAreEquallyFarApartAlongTheWayDriven) {
 }
 
 TEST(ConvoyTrail, ALeaderThatDrivesBackMovesBackOnItsPath) {
-  Trail trail = straight(10.0);
+  Trail trail = straight_trail(10.0);
   const std::uint32_t end = trail.end();
   EXPECT_NEAR(trail.leader_at({10.2, 0, 0}), 10.2, 1e-6);
   for (double x = 10.0; x > 6.0; x -= 0.1) trail.record({x, 0, 0});
@@ -45,7 +45,7 @@ TEST(ConvoyTrail, ALeaderThatDrivesBackMovesBackOnItsPath) {
 }
 
 TEST(ConvoyTrail, APlaceBeforeItsBeginningHasANegativePosition) {
-  const Trail trail = straight(10.0);
+  const Trail trail = straight_trail(10.0);
   EXPECT_NEAR(trail.project({-2.0, 0, 0}, 0, 10)->along, -2.0, 1e-6);
   EXPECT_NEAR(trail.project({3.3, 0.4, 0}, 0, 10)->along, 3.3, 1e-6);
   EXPECT_NEAR(trail.project({3.3, 0.4, 0}, 0, 10)->offset, 0.4, 1e-6);
@@ -53,7 +53,7 @@ TEST(ConvoyTrail, APlaceBeforeItsBeginningHasANegativePosition) {
 }
 
 TEST(ConvoyTrail, PiecesArriveInAnyOrderAndTwice) {
-  const Trail whole = straight(20.0);
+  const Trail whole = straight_trail(20.0);
   Trail trail;
   EXPECT_TRUE(trail.add(20, points(whole, 20, 28)));
   EXPECT_TRUE(trail.add(24, points(whole, 24, 32))) << "half of it is known";
@@ -65,7 +65,7 @@ TEST(ConvoyTrail, PiecesArriveInAnyOrderAndTwice) {
 }
 
 TEST(ConvoyTrail, PointsThatAreNoPathAreRefused) {
-  const Trail whole = straight(20.0);
+  const Trail whole = straight_trail(20.0);
   Trail trail;
   trail.add(0, points(whole, 0, 8));
   const std::vector<Eigen::Vector3d> far{{4, 0, 0}, {40, 0, 0}}, beside{{4, 30, 0}, {4.5, 30, 0}};
@@ -79,7 +79,7 @@ TEST(ConvoyTrail, PointsThatAreNoPathAreRefused) {
 }
 
 TEST(ConvoyTrail, IsBounded) {
-  const Trail trail = straight(500.0);
+  const Trail trail = straight_trail(500.0);
   EXPECT_EQ(trail.end() - trail.first(), Trail::kCapacity);
   EXPECT_NEAR(trail.at(trail.length()).x(), 500.0, Trail::kSpacing);
 }

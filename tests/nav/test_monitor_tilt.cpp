@@ -13,6 +13,9 @@
 namespace adit::nav::test {
 namespace {
 
+using Cause = CollisionMonitor::Cause;
+using Policy = CollisionMonitor::Policy;
+
 struct Lidar {
   int rings;
   double lowest, highest;  ///< Degrees.
@@ -159,8 +162,6 @@ TEST(MonitorTilt, ARampIsNoObstacleAndABoxOnItIsOne) {
 }
 
 TEST(MonitorTilt, ABodyThatMayTipOverStands) {
-  using Cause = CollisionMonitor::Cause;
-  using Policy = CollisionMonitor::Policy;
   std::mt19937 random(5);
   const Platform platform = wheeled();
   const double limit = Traversability::of(platform).tilt;

@@ -11,7 +11,7 @@
 namespace adit::sim {
 namespace {
 
-std::shared_ptr<const World> room() {
+std::shared_ptr<const World> square_room() {
   const std::vector<Box> boxes{{-0.2, 0, 0, 10, 0, 3},
                                {10, 10.2, 0, 10, 0, 3},
                                {0, 10, -0.2, 0, 0, 3},
@@ -22,7 +22,7 @@ std::shared_ptr<const World> room() {
 
 DriveSpec square(double noise) {
   DriveSpec spec;
-  spec.world = room();
+  spec.world = square_room();
   spec.platform = config::load_platform("wheeled").value();
   spec.start = {2, 2, 0};
   spec.steps = {StandFor{1.0}, DriveTo{{8, 2}}, DriveTo{{8, 8}}, TurnBy{-2 * M_PI, 1.2}, StandFor{0.5}};

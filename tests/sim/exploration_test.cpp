@@ -10,7 +10,7 @@
 namespace adit::sim {
 namespace {
 
-Platform wheeled() {
+Platform with_lidar() {
   Platform out;
   out.lidar_height = 0.75;
   return out;
@@ -31,7 +31,7 @@ std::shared_ptr<const World> two_rooms() {
 
 ExplorationTruth truth_of(const std::shared_ptr<const World>& world, std::vector<Pose2> starts) {
   std::vector<ExplorationRobot> robots;
-  for (const Pose2& start : starts) robots.push_back({wheeled(), start});
+  for (const Pose2& start : starts) robots.push_back({with_lidar(), start});
   return ExplorationTruth::create(world, robots).value();
 }
 

@@ -13,7 +13,7 @@
 namespace adit::sim {
 namespace {
 
-World room() {
+World open_room() {
   const std::array<Box, 3> boxes{Box{0, 8, -0.2, 0, 0, 3}, Box{0, 8, 4, 4.2, 0, 3}, Box{3, 4, 1, 2, 0, 0.8}};
   return *make_box_world(boxes, 0, 3);
 }
@@ -30,7 +30,7 @@ PictureSpec run() {
 
 TEST(Picture, the_same_run_gives_the_same_file) {
   const Scratch scratch;
-  const World world = room();
+  const World world = open_room();
   ASSERT_TRUE(write_picture(world, run(), scratch.path("a.png")));
   ASSERT_TRUE(write_picture(world, run(), scratch.path("b.png")));
   const std::string a = *read_file(scratch.path("a.png")), b = *read_file(scratch.path("b.png"));
@@ -44,7 +44,7 @@ TEST(Picture, the_same_run_gives_the_same_file) {
 
 TEST(Picture, shows_people_where_they_walked) {
   const Scratch scratch;
-  const World world = room();
+  const World world = open_room();
   const auto drawn = [&](const char* name, std::vector<Pose2> poses) {
     PictureSpec spec = run();
     if (!poses.empty()) spec.people.push_back({std::move(poses), 0.45});
@@ -62,25 +62,25 @@ TEST(Picture, an_empty_run_is_a_map) {
   PictureSpec spec;
   spec.width = 400;
   spec.trails.push_back({"r1", "never moved", {}, 0.6, 0.5});
-  EXPECT_TRUE(write_picture(room(), spec, scratch.path("map.png")));
+  EXPECT_TRUE(write_picture(open_room(), spec, scratch.path("map.png")));
   EXPECT_TRUE(write_picture(*make_box_world({}, 0, 3), {}, scratch.path("empty.png")));
 }
 
 TEST(Picture, says_what_is_wrong) {
   const Scratch scratch;
-  const auto nowhere = write_picture(room(), run(), scratch.path("no/such/folder.png"));
+  const auto nowhere = write_picture(open_room(), run(), scratch.path("no/such/folder.png"));
   EXPECT_EQ(nowhere.reason(), Reason::cannot_write);
   EXPECT_NE(nowhere.error().text.find("folder.png"), std::string::npos);
   PictureSpec spec = run();
   spec.width = 10;
-  EXPECT_EQ(write_picture(room(), spec, scratch.path("a.png")).reason(), Reason::bad_argument);
+  EXPECT_EQ(write_picture(open_room(), spec, scratch.path("a.png")).reason(), Reason::bad_argument);
   spec = run();
   spec.trails[0].poses.push_back({std::numeric_limits<double>::infinity(), 0, 0});
-  EXPECT_EQ(write_picture(room(), spec, scratch.path("a.png")).reason(), Reason::bad_argument);
+  EXPECT_EQ(write_picture(open_room(), spec, scratch.path("a.png")).reason(), Reason::bad_argument);
 }
 
 TEST(GroundPlan, tells_walls_from_furniture) {
-  const World world = room();
+  const World world = open_room();
   const GroundPlan plan = make_ground_plan(world, 0.5);
   const auto kind = [&](double x, double y) {
     return plan.at(world.grid().column_x(x), world.grid().column_y(y));

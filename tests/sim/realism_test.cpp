@@ -6,20 +6,12 @@
 #include <cmath>
 
 #include "sim/world/simulation.hpp"
+#include "tests/sim/wheeled.hpp"
 
 namespace adit::sim {
 namespace {
 
 constexpr double kSlope = 0.14;  // rise per run of the ramp
-
-Platform wheeled() {
-  Platform p;
-  p.name = "wheeled";
-  p.max_speed = 2.0;
-  p.max_turn = 1.5;
-  p.max_acceleration = 1.5;
-  return p;
-}
 
 /// A ramp that rises from x = 1 in the direction of x.
 std::shared_ptr<const World> ramp() {
@@ -33,7 +25,7 @@ std::shared_ptr<const World> ramp() {
   return world;
 }
 
-std::shared_ptr<const World> hall() {
+std::shared_ptr<const World> large_hall() {
   static const auto world = [] {
     const std::array<Box, 2> boxes{Box{8, 8.5, -8, 8, 0, 3}, Box{-8, 8, 6, 6.5, 0, 3}};
     return std::make_shared<const World>(*make_box_world(boxes, 0, 3));
@@ -101,7 +93,7 @@ TEST(Realism, BodyPitchesOverAStepAndWhileItBrakes) {
   EXPECT_LT(over.pitch, 0.25);
   EXPECT_NEAR(s.truth(0).pose.position.z(), 0.07, 0.005);
 
-  Simulation flat = make(hall(), {{"r1", wheeled(), {0, 0, 0}}}, 0.0);
+  Simulation flat = make(large_hall(), {{"r1", wheeled(), {0, 0, 0}}}, 0.0);
   const Peak start = drive(flat, {2, 0, 0}, 2.0);
   drive(flat, {2, 0, 0}, 0.5);
   const Peak brake = drive(flat, {}, 1.3);
@@ -116,7 +108,7 @@ TEST(Realism, BodyPitchesOverAStepAndWhileItBrakes) {
 TEST(Realism, LeggedBodySwaysWhileItWalksAndFlyingOneLeansIntoItsAcceleration) {
   Platform legged = wheeled();
   legged.drive = Drive::holonomic;
-  Simulation walk = make(hall(), {{"r1", legged, {0, 0, 0}}}, 0.0);
+  Simulation walk = make(large_hall(), {{"r1", legged, {0, 0, 0}}}, 0.0);
   drive(walk, {0.8, 0, 0}, 2.0);
   const Peak gait = drive(walk, {0.8, 0, 0}, 2.0);
   EXPECT_NEAR(gait.roll, 1.5 * kDegree, 0.2 * kDegree);
@@ -128,7 +120,7 @@ TEST(Realism, LeggedBodySwaysWhileItWalksAndFlyingOneLeansIntoItsAcceleration) {
   flyer.drive = Drive::aerial;
   flyer.height = 0.3;
   flyer.hover_height = 1.0;
-  Simulation fly = make(hall(), {{"r1", flyer, {0, 0, 0}}}, 0.0);
+  Simulation fly = make(large_hall(), {{"r1", flyer, {0, 0, 0}}}, 0.0);
   drive(fly, {2, 0, 0}, 0.8);
   EXPECT_NEAR(tilt_of(fly.truth(0).pose).pitch, std::atan(1.5 / 9.81), 0.02) << "nose down";
   EXPECT_NEAR(fly.truth(0).pose.position.z(), 1.0, 1e-6);
@@ -150,7 +142,7 @@ TEST(Realism, OdometryDriftsWithinTheDeviationThatItStates) {
   constexpr int kRuns = 16;
   double height = 0.0;
   for (int seed = 1; seed <= kRuns; ++seed) {
-    Simulation s = make(hall(), {{"r1", wheeled(), {0, 0, 0}}}, 1.0, seed);
+    Simulation s = make(large_hall(), {{"r1", wheeled(), {0, 0, 0}}}, 1.0, seed);
     drive(s, {0.8, 0, 0.5}, 40.0);
     const Pose3& truth = s.truth(0).pose;
     const Odometry& odom = s.odometry(0);
@@ -170,7 +162,7 @@ TEST(Realism, OdometryDriftsWithinTheDeviationThatItStates) {
 }
 
 TEST(Imu, AtRestItReadsGravityUpwards) {
-  Simulation s = make(hall(), {{"r1", wheeled(), {0, 0, 0}}}, 0.0);
+  Simulation s = make(large_hall(), {{"r1", wheeled(), {0, 0, 0}}}, 0.0);
   drive(s, {}, 1.0);
   const auto samples = s.take_imu(0);
   ASSERT_NEAR(samples.size(), 98, 2);
@@ -186,7 +178,7 @@ TEST(Imu, RotatingBodyShowsTheLeverArmAndTheRate) {
   RobotStart start{"r1", wheeled(), {0, 0, 0}};
   start.platform.imu.emplace();
   start.platform.imu->mounting = {.x = 0.2, .z = 0.2};
-  Simulation s = make(hall(), {start}, 0.0);
+  Simulation s = make(large_hall(), {start}, 0.0);
   drive(s, {0, 0, 1.5}, 3.0);
   const ImuSample last = s.take_imu(0).back();
   EXPECT_NEAR(last.gyro.z(), 1.5, 1e-3);
@@ -199,7 +191,7 @@ TEST(Imu, FastSensorsGiveTheirRateAndFaultsOfTheMountShow) {
   params.rate = 400.0;
   params.in_g = true;
   params.upside_down = true;
-  Simulation s = make(hall(), {{"r1", wheeled(), {0, 0, 0}}}, 0.0, 1, params);
+  Simulation s = make(large_hall(), {{"r1", wheeled(), {0, 0, 0}}}, 0.0, 1, params);
   drive(s, {}, 0.5);
   const auto samples = s.take_imu(0);
   EXPECT_NEAR(samples.size(), 193, 4);
@@ -208,7 +200,7 @@ TEST(Imu, FastSensorsGiveTheirRateAndFaultsOfTheMountShow) {
 
 TEST(Imu, ErrorsAreThoseOfItsSeed) {
   const auto mean = [](std::uint64_t seed) {
-    Simulation s = make(hall(), {{"r1", wheeled(), {0, 0, 0}}}, 1.0, seed);
+    Simulation s = make(large_hall(), {{"r1", wheeled(), {0, 0, 0}}}, 1.0, seed);
     drive(s, {}, 3.0);
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const auto samples = s.take_imu(0);
@@ -243,7 +235,7 @@ double mean_error(const SweepJob& job) {
 }
 
 TEST(Sweep, EachColumnIsTracedFromThePoseAtItsOwnTime) {
-  Simulation s = make(hall(), {{"r1", wheeled(), {2, 0, 0}}}, 0.0);
+  Simulation s = make(large_hall(), {{"r1", wheeled(), {2, 0, 0}}}, 0.0);
   drive(s, {1.0, 0, 1.5}, 1.2);
   const SweepJob job = s.sweep(0);
   EXPECT_EQ(job.T_world_lidar.size(), 11u);
@@ -270,7 +262,7 @@ TEST(Sweep, EachColumnIsTracedFromThePoseAtItsOwnTime) {
 
 TEST(Sweep, MountErrorAndNoiseAreReproducibleAndBounded) {
   const auto mount = [](double noise, std::uint64_t seed) {
-    Simulation s = make(hall(), {{"r1", wheeled(), {0, 0, 0}}}, noise, seed);
+    Simulation s = make(large_hall(), {{"r1", wheeled(), {0, 0, 0}}}, noise, seed);
     return s.truth(0).pose.inverse() * s.sweep(0).T_world_lidar.back();
   };
   const Pose3 nominal = wheeled().lidar().mounting.pose();
@@ -288,7 +280,7 @@ TEST(Sweep, MountErrorAndNoiseAreReproducibleAndBounded) {
 }
 
 TEST(Sweep, FarAndGrazingSurfacesAreNoisierAndSomeBeamsGetLost) {
-  Simulation s = make(hall(), {{"r1", wheeled(), {0, 0, 0}}}, 1.0);
+  Simulation s = make(large_hall(), {{"r1", wheeled(), {0, 0, 0}}}, 1.0);
   drive(s, {}, 0.3);
   SweepJob noisy = s.sweep(0), exact = noisy;
   exact.errors.noise = 0.0;

@@ -7,20 +7,10 @@
 #include <cmath>
 
 #include "tests/sim/scratch.hpp"
+#include "tests/sim/wheeled.hpp"
 
 namespace adit::sim {
 namespace {
-
-Platform wheeled() {
-  Platform p;
-  p.name = "wheeled";
-  p.length = 0.6;
-  p.width = 0.5;
-  p.max_speed = 2.0;
-  p.max_turn = 1.5;
-  p.max_acceleration = 1.5;
-  return p;
-}
 
 std::shared_ptr<const World> hall() {  // walls at x = 5 and y = 3
   const std::array<Box, 2> boxes{Box{5, 5.2, -3, 3.2, 0, 3}, Box{-5, 5.2, 3, 3.2, 0, 3}};
