@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/rehearsal/agent_factory.hpp"
 
-#include <map>
-#include <mutex>
-#include <vector>
-
-#include "nav/planners/falco/falco_planner.hpp"
+#include "nav/planners/falco/shared_library.hpp"
 #include "robot_agent/agent.hpp"
 #include "sim/defects/defect.hpp"
 #include "sim/defects/intercepted_participant.hpp"
@@ -39,32 +35,13 @@ class ProductAgent final : public RehearsedAgent {
   agent::Agent agent_;
 };
 
-/// The planner libraries of all robots of all runs: agents are started often, and a library takes 70 ms.
-class Libraries {
- public:
-  std::shared_ptr<const nav::PlannerLibrary> of(const Platform& p) {
-    Key key{p.length, p.width, p.max_speed, p.path_curvature, p.path_segment};
-    for (const Eigen::Vector2d& corner : p.footprint) key.insert(key.end(), {corner.x(), corner.y()});
-    const std::lock_guard lock(mutex_);
-    auto& library = made_[key];
-    if (!library) library = nav::PlannerLibrary::build(p, {});
-    return library;
-  }
-
- private:
-  /// All of a platform that PlannerLibrary::build looks at.
-  using Key = std::vector<double>;
-  std::mutex mutex_;
-  std::map<Key, std::shared_ptr<const nav::PlannerLibrary>> made_{};
-};
-
 }  // namespace
 
 Result<AgentFactory> make_agent_factory(const std::string& defect,
                                         std::function<void(agent::AgentParams&)> adjust) {
   const Defect* known = find_defect(defect);
   if (!defect.empty() && !known) return Error{Reason::bad_argument, "no defect of that name: " + defect};
-  return AgentFactory([known, adjust = std::move(adjust), libraries = std::make_shared<Libraries>()](
+  return AgentFactory([known, adjust = std::move(adjust)](
                           const AgentContext& context) -> Result<std::unique_ptr<RehearsedAgent>> {
     Decoration decoration =
         known ? known->decorate({context.spec.id, context.platform, context.runtime, context.disk})
@@ -73,7 +50,7 @@ Result<AgentFactory> make_agent_factory(const std::string& defect,
     // The map is the world's frame: the ground of the start is where the world has it, unless a key says so.
     params.start_height = context.spec.settings.start_height.value_or(context.start_ground);
     params.seed = context.seed;
-    params.library = [libraries](const Platform& platform) { return libraries->of(platform); };
+    params.library = nav::shared_library;
     params.disk = decoration.disk ? decoration.disk : context.disk;
     params.end = context.end;
     if (adjust) adjust(params);

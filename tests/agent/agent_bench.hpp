@@ -16,6 +16,7 @@
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
+#include "nav/planners/falco/shared_library.hpp"
 #include "nav_msgs/msg/Odometry.h"
 #include "robot_agent/agent.hpp"
 #include "sensor_msgs/msg/Imu.h"
@@ -65,6 +66,7 @@ class AgentBench {
                       const std::string& tree = source_folder() + "/config/trees/robot.xml")
       : params_(std::move(params)), scheduler_(seed), network_(scheduler_, {seed}) {
     params_.tree = tree;
+    if (!params_.library) params_.library = nav::shared_library;
     machine_ = scheduler_.machine("r1", 77777s);
     world_ = scheduler_.machine("world", 3s);
     strand_ = world_->strand("bench");

@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <mutex>
+
+#include "nav/planners/falco/shared_library.hpp"
 
 namespace adit::nav {
 namespace {
@@ -76,6 +80,18 @@ std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& plat
   add(short_tree, turn_needs, params.tight_margin, params.tight_speed, 1);
   add(short_tree, turn_needs, params.squeeze_margin, params.squeeze_speed, 1);
   library->rotation = RotationTable(body.grown(kTurnMargin, kTurnMargin));
+  return library;
+}
+
+std::shared_ptr<const PlannerLibrary> shared_library(const Platform& p) {
+  // All of a platform that PlannerLibrary::build looks at.
+  std::vector<double> key{p.length, p.width, p.max_speed, p.path_curvature, p.path_segment};
+  for (const Eigen::Vector2d& corner : p.footprint) key.insert(key.end(), {corner.x(), corner.y()});
+  static std::mutex mutex;
+  static std::map<std::vector<double>, std::shared_ptr<const PlannerLibrary>> libraries;
+  const std::lock_guard lock(mutex);
+  auto& library = libraries[key];
+  if (!library) library = PlannerLibrary::build(p, {});
   return library;
 }
 
