@@ -39,6 +39,8 @@ struct AgentParams {
   Pose2 start{};          ///< Map frame; the pose where odometry begins.
   double start_height{};  ///< Height of the ground at `start`, map frame, m; the z of odometry is relative to
                           ///< it.
+  bool start_given{};  ///< `start` replaces the stored place, and the robot holds; false: a stored place is
+                       ///< used.
   Duration lock_lease{300s};  ///< A lock expires after its holder was silent for this long; 0: never.
   /// Behaviour tree, on the configuration's search path. A tree that cannot be read, or contradicts the mode
   /// table, is refused: the agent runs in `hold` with the reason tree_refused.

@@ -33,7 +33,9 @@ void Notices::restored(const Restored& found, bool same_boot) const {
           "restarted",
           Reason::none,
           robot_ + " was restarted: " + describe(*found.snapshot) +
-              (same_boot ? "" : "; with its computer, so it holds")});
+              (found.placed ? "; its start says where it is, so it holds"
+               : same_boot  ? ""
+                            : "; with its computer, so it holds")});
   if (found.damaged)
     send({{},
           Severity::error,

@@ -58,11 +58,11 @@ height and tilt of the lidars against the ground, gravity and its axis, the gyro
 Exit status: 0 all is OK, 1 something is wrong, 2 wrong usage or configuration.)";
 
 struct Options {
-  std::string config{}, name{}, state{}, log{}, link{}, record{};
+  std::string config{}, name{}, perception{}, state{}, log{}, link{}, record{};
   std::vector<double> pose{};
   int domain{-1}, robot_domain{-1};
   double memory_limit{-1.0}, good_run{10.0};
-  bool supervised{}, reports{}, allow_faults{};
+  bool supervised{}, reports{}, placed{}, allow_faults{};
 };
 
 int fail(const Error& error, int code) {
@@ -82,6 +82,10 @@ Result<RobotConfig> load(const Options& options) {
                  "a robot's name is 1 to 32 of [A-Za-z0-9_-] and not all, not '" + config->name + "'"};
   if (!options.pose.empty()) config->start = {options.pose[0], options.pose[1], options.pose[2]};
   if (options.pose.size() > 3) config->start_height = options.pose[3];
+  if (!options.perception.empty())
+    config->perception = options.perception == "slam"       ? PerceptionLevel::slam
+                         : options.perception == "odometry" ? PerceptionLevel::odometry
+                                                            : PerceptionLevel::off;
   if (options.domain >= 0) config->radio.domain = static_cast<std::uint32_t>(options.domain);
   if (options.robot_domain >= 0) config->robot_domain = static_cast<std::uint32_t>(options.robot_domain);
   if (!options.link.empty()) {
@@ -176,6 +180,8 @@ int run_agent(const RobotConfig& config, const Options& options) {
        .on_error = [log = *log, name = config.name](const std::string& text) { Log(log, name).warn(text); }});
 
   AgentParams params = agent_params(config);
+  // A child that its parent restarted goes on from where it was.
+  params.start_given = !options.pose.empty() && (!options.reports || options.placed);
   params.seed = drawn_seed();
   params.log = flight_recorder.tap(*log);
   params.boot = this_boot();
@@ -235,6 +241,7 @@ int run_parent(const RobotConfig& config, const Options& options, int argc, char
   for (int i = 1; i < argc; ++i)
     if (std::string(argv[i]) != "--supervised") params.command.push_back(argv[i]);
   params.command.push_back("--reports");
+  params.at_first = {"--placed"};
   ZeroSender zero;
   Parent parent(
       params,
@@ -269,9 +276,13 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option("--config", options.config, "robot file, as config/robots/r1.yaml");
   app.add_option("--name", options.name, "another name than the file's");
-  app.add_option("--pose", options.pose, "start pose X Y YAW [HEIGHT] in the map: m, m, rad, m")
+  app.add_option(
+         "--pose", options.pose,
+         "where in the map the odometry begins, X Y YAW [HEIGHT]: m, m, rad, m; replaces the stored place")
       ->expected(3, 4)
       ->check(config::between(-1e4, 1e4));
+  app.add_option("--perception", options.perception, "off, odometry or slam, instead of the file's")
+      ->check(CLI::IsMember({"off", "odometry", "slam"}));
   app.add_option("--domain", options.domain, "DDS domain of the radio")->check(config::between(0, 232));
   app.add_option("--robot-domain", options.robot_domain, "DDS domain of the driver")
       ->check(config::between(0, 232));
@@ -288,7 +299,9 @@ int main(int argc, char** argv) {
       ->check(config::between(0.0, 1e6));
   app.add_flag("--allow-faults", options.allow_faults,
                "let the robot's console make components fail: fault crash|hang COMPONENT");
-  app.add_flag("--reports", options.reports)->group("");  // Set by the parent process.
+  // Set by the parent process: for each child, and until one has reported.
+  app.add_flag("--reports", options.reports)->group("");
+  app.add_flag("--placed", options.placed)->group("");
   // For measurements that kill the agent repeatedly.
   app.add_option("--good-run", options.good_run)->group("")->check(config::between(0.0, 3600.0));
   auto* console =

@@ -44,8 +44,10 @@ Parent::Parent(ParentParams params, std::function<void()> prepare, std::function
 bool Parent::spawn() {
   int pipe[2];
   if (::pipe2(pipe, O_CLOEXEC) != 0) return false;
+  std::vector<std::string> words = params_.command;
+  if (!has_commanded_) words.insert(words.end(), params_.at_first.begin(), params_.at_first.end());
   std::vector<char*> argv;
-  for (std::string& word : params_.command) argv.push_back(word.data());
+  for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
@@ -90,7 +92,7 @@ void Parent::hear() {
   char bytes[64];
   const ssize_t got = ::read(report_, bytes, sizeof bytes);
   if (got <= 0) return close_fd(report_);
-  commands_ = true;
+  commands_ = has_commanded_ = true;
   heard_ = Clock::now();
 }
 
@@ -102,8 +104,8 @@ int Parent::wait_for_end() {
     pollfd wait[3] = {{pidfd_, POLLIN, 0}, {signals_, POLLIN, 0}, {report_, POLLIN, 0}};
     const bool zero = prepared_ && !commands_;
     ::poll(wait, 3, milliseconds(zero ? params_.zero_period : kTurn));
+    if (wait[2].revents != 0) hear();  // Also what a child reported just before its end.
     if (wait[0].revents != 0) return reap();
-    if (wait[2].revents != 0) hear();
     if (wait[1].revents != 0) {
       signalfd_siginfo info{};
       (void)!::read(signals_, &info, sizeof info);

@@ -11,6 +11,7 @@ namespace adit::agent {
 struct ParentParams {
   std::string program{"/proc/self/exe"};  ///< Executable of the child.
   std::vector<std::string> command{};     ///< Arguments of the child, its name first.
+  std::vector<std::string> at_first{};    ///< Further arguments of each child until one has reported.
   Duration zero_period{50ms};             ///< Period of the zero velocities while no agent is running.
   Duration first_restart{20ms};  ///< Pause before a restart; four times as long before each further one.
   Duration longest_restart{10s};
@@ -52,7 +53,7 @@ class Parent {
   std::function<void()> send_zero_;
   int signals_{-1};
   int child_{-1}, pidfd_{-1}, report_{-1};
-  bool prepared_{}, commands_{}, ending_{};
+  bool prepared_{}, commands_{}, has_commanded_{}, ending_{};
   std::chrono::steady_clock::time_point heard_{};
 };
 

@@ -47,6 +47,16 @@ Restored usable(ReadSnapshot read) {
 
 }  // namespace
 
+void Restored::place_at(const Pose2& T_map_odom, double height) {
+  if (!snapshot || !snapshot->place) return;
+  const StoredFrames& stored = *snapshot->place;
+  snapshot->place = StoredFrames{.T_map_odom = T_map_odom,
+                                 .odom_epoch = stored.odom_epoch + 1,
+                                 .height = height,
+                                 .map_epoch = stored.map_epoch};
+  placed = true;
+}
+
 Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
   if (!disk) return {};
   const store::State state = store::StateFile(disk, kStateFile, kSnapshotFormat).load();

@@ -23,6 +23,11 @@ struct Restored {
   std::string text{};       ///< What was lost and why, for operators; empty: nothing was lost.
   std::string preserved{};  ///< The new name of a file that could not be read; empty: none.
   std::uint64_t generation{};
+  bool placed{};  ///< The stored place was replaced by place_at().
+
+  /// Replaces the stored place by that of an odometry frame that nothing is known of yet: no mode resumes in
+  /// it. `T_map_odom`, `height`: the pose of the frame's origin in the map, m and rad.
+  void place_at(const Pose2& T_map_odom, double height);
 };
 
 /// Reads the state; never guesses. A file that this version cannot use is renamed, and one that it can use in

@@ -199,6 +199,7 @@ class AgentBench {
   wire::SimulatedNetwork& network() { return network_; }
   const wire::Participant& radio() const { return *radio_; }
   Agent& agent() { return *agent_; }
+  AgentParams& params() { return params_; }  ///< Of the next start of the agent.
   /// Of the driver and the operators, outside of the agent.
   Executor& strand() { return *strand_; }
   std::unique_ptr<Runtime> machine(const std::string& name) { return scheduler_.machine(name, 9s); }

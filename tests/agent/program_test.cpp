@@ -11,6 +11,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "robot_agent/program/console.hpp"
@@ -272,6 +273,19 @@ TEST_F(ParentTest, SendsZeroWhileNoChildCommandsAndRestarts) {
   EXPECT_EQ(parent.run(), 0);
   EXPECT_EQ(prepared, 1);
   EXPECT_GE(zeros, 3);  // at the death, and every 50 ms of the pause
+}
+
+TEST_F(ParentTest, PassesTheFirstArgumentsUntilAChildHasReported) {
+  const std::string log = folder.path() + "/log";
+  ParentParams params = shell("echo \"$@.\" >> " + log + "; case $(wc -l < " + log +
+                              ") in 1) exit 7;; 2) echo -n 1 >&3; exit 7;; esac");
+  params.command.push_back("sh");
+  params.at_first = {"first"};
+  Parent parent(
+      params, [] {}, [] {});
+  EXPECT_EQ(parent.run(), 0);
+  std::ifstream file(log);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "first.\nfirst.\n.\n");
 }
 
 TEST_F(ParentTest, WrongUsageIsNotRestarted) {

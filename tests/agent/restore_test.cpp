@@ -160,6 +160,23 @@ TEST_F(Restore, AfterARestartOfTheComputerItHolds) {
   EXPECT_THAT(bench->commands, only_zero());
 }
 
+TEST_F(Restore, AStartThatSaysWhereTheRobotIsReplacesTheStoredPlaceAndHolds) {
+  take_lock_and_go();
+  bench->run(1s);
+  ASSERT_GT(bench->command.vx, 0.1);
+  bench->params().start = {-3.0, 1.0, 0.0};
+  bench->params().start_given = true;
+  crash();
+  bench->run(2s);
+  EXPECT_NEAR(op1->state.x(), bench->pose.x - 3.0, 0.01);
+  EXPECT_NEAR(op1->state.y(), bench->pose.y + 1.0, 0.01);
+  EXPECT_EQ(op1->authority.holder(), "op1");
+  EXPECT_EQ(op1->behaviour.mode(), "hold");
+  EXPECT_EQ(op1->behaviour.goal_state(), radio::GOAL_KEPT);
+  EXPECT_THAT(bench->commands, only_zero());
+  EXPECT_THAT(notice(*op1, "restarted"), HasSubstr("its start says where it is"));
+}
+
 TEST_F(Restore, AManualModeFallsToHold) {
   ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
   bench->stream(*op1, 0, 300ms);
