@@ -11,6 +11,7 @@
 // type decodes it as below, and other programs (Foxglove, the libraries of mcap.dev) decode it by the IDL.
 #include <cstdio>
 #include <fstream>
+#include <iomanip>
 #include <map>
 
 #include "adit/robot.h"
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
   std::ofstream csv;
   if (argc == 3) {
     csv.open(argv[2]);
-    csv << "time,robot,x,y,yaw\n";
+    csv << std::fixed << std::setprecision(3) << "time,robot,x,y,yaw\n";
   }
 
   std::map<std::string, TopicRate> topics;
