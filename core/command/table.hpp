@@ -237,7 +237,8 @@ inline constexpr std::array kTable{
                 .danger = Danger::some,
                 .conditions = {.holder = true, .mode = "MODE"},
                 .line = Line::steering,
-                .summary = "request a mode: hold, manual, smart_joystick, waypoint, explore or external",
+                .summary = "request a mode: hold, manual, smart_joystick, waypoint, explore, external or "
+                           "convoy_follow",
                 .example = "mode r1 r2 hold",
                 .done = "mode {MODE}"},
     CommandInfo{.name = "drive",
