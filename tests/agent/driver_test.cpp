@@ -238,7 +238,7 @@ TEST_F(OdometryTest, SamplesCarryTheTimeAtWhichTheyCame) {
   }
 }
 
-TEST(Rival, IsHeardInTheDriversOwnType) {
+TEST(DriverRival, IsHeardInTheDriversOwnType) {
   VirtualScheduler scheduler{1};
   wire::SimulatedNetwork network{scheduler, {}};
   const std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
