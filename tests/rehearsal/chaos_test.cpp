@@ -20,7 +20,7 @@ Scenario team() {
   return *scenario;
 }
 
-RunReport run(const Scenario& scenario, std::uint64_t seed, const std::string& defect = {}) {
+RunReport run_chaos(const Scenario& scenario, std::uint64_t seed, const std::string& defect = {}) {
   static const auto world = *make_world(team().world);
   RunParams params;
   params.seed = seed;
@@ -37,7 +37,7 @@ TEST(Chaos, TwentySeedsBreakNoRule) {
   {
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
-      for (std::size_t i = next++; i < reports.size(); i = next++) reports[i] = run(scenario, i + 1);
+      for (std::size_t i = next++; i < reports.size(); i = next++) reports[i] = run_chaos(scenario, i + 1);
     };
     const std::jthread one(work), two(work);
   }
@@ -53,13 +53,13 @@ TEST(Chaos, WhatASeedDrawsCanBeWrittenOutAndIsTheSameRun) {
   const Scenario scenario = team();
   const Scenario written = written_out(scenario, 5);
   EXPECT_FALSE(written.random);
-  EXPECT_EQ(run(written, 5).digest, run(scenario, 5).digest);
+  EXPECT_EQ(run_chaos(written, 5).digest, run_chaos(scenario, 5).digest);
   const auto text = to_text(written, {6, 0, 3s, "r1: x"}, "again.yaml");
   ASSERT_TRUE(text.ok()) << text.error().text;
   const auto again = parse_scenario(*text, "again.yaml");
   ASSERT_TRUE(again.ok()) << again.error().text;
   EXPECT_EQ(again->seed, 5U);
-  EXPECT_EQ(run(*again, 5).digest, run(scenario, 5).digest);
+  EXPECT_EQ(run_chaos(*again, 5).digest, run_chaos(scenario, 5).digest);
 }
 
 TEST(Chaos, AFailingSeedIsShrunkToAScenarioThatFailsByItself) {
@@ -67,21 +67,21 @@ TEST(Chaos, AFailingSeedIsShrunkToAScenarioThatFailsByItself) {
   const Scenario scenario = team();
   std::optional<Failure> failure;
   std::uint64_t seed = 0;
-  while (!failure && seed < 200) failure = failure_of(scenario, run(scenario, ++seed, defect));
+  while (!failure && seed < 200) failure = failure_of(scenario, run_chaos(scenario, ++seed, defect));
   ASSERT_TRUE(failure);
   const ShrinkResult small =
       shrink(written_out(scenario, seed), *failure,
-             [&](const Scenario& s) -> Result<RunReport> { return run(s, s.seed, defect); }, {});
+             [&](const Scenario& s) -> Result<RunReport> { return run_chaos(s, s.seed, defect); }, {});
   EXPECT_LE(small.scenario.faults.size(), 3U);
   EXPECT_LE(small.scenario.script.size(), 10U);
   const auto text = to_text(small.scenario, small.failure, "small.yaml");
   ASSERT_TRUE(text.ok()) << text.error().text;
   const auto again = parse_scenario(*text, "small.yaml");
   ASSERT_TRUE(again.ok()) << again.error().text;
-  const auto same = failure_of(*again, run(*again, again->seed, defect));
+  const auto same = failure_of(*again, run_chaos(*again, again->seed, defect));
   ASSERT_TRUE(same);
   EXPECT_TRUE(same->same(*failure)) << same->text;
-  EXPECT_FALSE(failure_of(*again, run(*again, again->seed))) << "the defect is what fails";
+  EXPECT_FALSE(failure_of(*again, run_chaos(*again, again->seed))) << "the defect is what fails";
 }
 
 TEST(Chaos, TextThatIsNotLaidOutInLinesIsNotWritten) {

@@ -51,7 +51,7 @@ random_faults:
   kinds: [crash, cut, degrade, reorder, duplicate, clock_jump, sensor_silent, stuck_stick, crash_component, hang]
 )";
 
-std::uint64_t seeds() {
+std::uint64_t hostile_seeds() {
   const char* given = std::getenv("ADIT_HOSTILE_SEEDS");
   return given ? std::strtoull(given, nullptr, 10) : 2;
 }
@@ -71,7 +71,7 @@ TEST_P(HostileTreeRun, BreaksNoRule) {
     agent.tree = GetParam();
     agent.load_tree = [](const std::string& file) { return agent::Decider::load_unchecked(file); };
   });
-  for (params.seed = 1; params.seed <= seeds(); ++params.seed) {
+  for (params.seed = 1; params.seed <= hostile_seeds(); ++params.seed) {
     const auto outcome = rehearse(*scenario, world, params);
     ASSERT_TRUE(outcome.ok()) << outcome.error().text;
     for (const std::string& line : outcome->report.complaints())

@@ -6,7 +6,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr const char* kHead =
+constexpr const char* kMonitorHead =
     R"(world: {boxes: [[6, 6.3, -8, 8, 0, 2], [3, 3.4, -1.4, -0.6, 0, 0.4]], floor: 0, ceiling: 3}
 duration: 24
 link: wifi
@@ -19,7 +19,7 @@ script:
 )";
 
 RunReport run(const std::string& platform, const std::string& rest, const std::string& defect) {
-  std::string text = kHead;
+  std::string text = kMonitorHead;
   text.replace(text.find("PLATFORM"), 8, platform);
   return run_text(text + rest, "monitor.yaml", defect);
 }

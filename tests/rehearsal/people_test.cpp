@@ -10,7 +10,7 @@
 namespace adit::sim {
 namespace {
 
-RunReport run(const Scenario& scenario, std::uint64_t seed) {
+RunReport run_seed(const Scenario& scenario, std::uint64_t seed) {
   RunParams params;
   params.seed = seed;
   params.make_agent = *make_agent_factory();
@@ -19,20 +19,16 @@ RunReport run(const Scenario& scenario, std::uint64_t seed) {
   return std::move(outcome->report);
 }
 
-void expect_ok(const RunReport& report) {
-  for (const std::string& line : report.complaints()) ADD_FAILURE() << "seed " << report.seed << ": " << line;
-}
-
 TEST(People, TwoRobotsPassThemAndEachOther) {
   const Scenario scenario = load_shipped("people.yaml");
   // In 2 of the first 40 seeds, 3 and 38, a robot touches one of them.
-  for (const std::uint64_t seed : {1, 2, 4}) expect_ok(run(scenario, seed));
+  for (const std::uint64_t seed : {1, 2, 4}) expect_ok(run_seed(scenario, seed));
 }
 
 TEST(People, SixteenRingsShowThemAsWell) {
   Scenario scenario = load_shipped("people.yaml");
   scenario.lidar = LidarKind::full;
-  expect_ok(run(scenario, 1));
+  expect_ok(run_seed(scenario, 1));
 }
 
 TEST(People, WhoYieldToNobodyAreTheOnesWhoRunIntoTheRobot) {
@@ -44,7 +40,7 @@ TEST(People, WhoYieldToNobodyAreTheOnesWhoRunIntoTheRobot) {
   scenario.script.front().command = "take r1";
   scenario.expectations.clear();
   scenario.duration = 30s;
-  const RunReport report = run(scenario, 1);
+  const RunReport report = run_seed(scenario, 1);
   EXPECT_GT(report.robots.at("r1").collisions, 0);
   EXPECT_EQ(report.robots.at("r1").caused, 0);
   bool told = false;
@@ -54,13 +50,13 @@ TEST(People, WhoYieldToNobodyAreTheOnesWhoRunIntoTheRobot) {
 
 TEST(HeadOn, InACorridorOfTwoMetresTwentyTheyPass) {
   const Scenario scenario = load_shipped("head_on.yaml");
-  for (std::uint64_t seed = 1; seed <= seeds(2, 4); ++seed) expect_ok(run(scenario, seed));
+  for (std::uint64_t seed = 1; seed <= seeds(2, 4); ++seed) expect_ok(run_seed(scenario, seed));
 }
 
 TEST(HeadOn, TwoOfAKindPassToo) {
   Scenario scenario = load_shipped("head_on.yaml");
   scenario.robots[1].platform = "wheeled";
-  for (std::uint64_t seed = 1; seed <= seeds(2, 4); ++seed) expect_ok(run(scenario, seed));
+  for (std::uint64_t seed = 1; seed <= seeds(2, 4); ++seed) expect_ok(run_seed(scenario, seed));
 }
 
 }  // namespace

@@ -15,13 +15,6 @@ RunReport run(const std::string& boxes, int duration, const std::string& script,
           script + rest,
       "route.yaml");
 }
-void expect_ok(const RunReport& report) {
-  for (const std::string& line : report.complaints()) ADD_FAILURE() << line;
-  for (const TimedEvent& event : report.events)
-    if (testing::Test::HasFailure())
-      std::printf("%6.1f %s %s\n", seconds(event.at), event.robot.c_str(), event.text.c_str());
-}
-
 // A pocket that is open behind the robot, and walls around it all.
 constexpr const char* kPocket =
     "[4, 4.3, -3, 3, 0, 2], [-3, 4.3, 3, 3.3, 0, 2], [-3, 4.3, -3.3, -3, 0, 2], "

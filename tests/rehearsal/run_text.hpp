@@ -2,6 +2,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 
@@ -21,6 +22,14 @@ inline Scenario load_shipped(const std::string& file) {
   auto scenario = load_scenario(source_folder() + "/config/scenarios/" + file);
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
   return *scenario;
+}
+
+/// That all expectations and rules hold; the events are printed when they do not.
+inline void expect_ok(const RunReport& report) {
+  for (const std::string& line : report.complaints()) ADD_FAILURE() << "seed " << report.seed << ": " << line;
+  for (const TimedEvent& event : report.events)
+    if (testing::Test::HasFailure())
+      std::printf("%6.1f %s %s\n", seconds(event.at), event.robot.c_str(), event.text.c_str());
 }
 
 /// What a scenario written in a test comes to; `defect`: one of sim/defects, none when empty.
