@@ -15,7 +15,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::uint16_t kPortOfPeer = 7412;
-const in_addr_t kLoopback = htonl(INADDR_LOOPBACK);
+const in_addr_t kLocalhost = htonl(INADDR_LOOPBACK);
 
 Bytes message(std::uint8_t from, const std::vector<Bytes>& submessages) {
   Bytes m{'R', 'T', 'P', 'S', 2, 3, 1, 15};
@@ -114,7 +114,7 @@ struct Talk {
   Duration now{1s};
   std::vector<Bytes> repeated{};
 
-  bool sends(Bytes m, std::uint16_t port) { return assist.sent(m, kLoopback, port, now); }
+  bool sends(Bytes m, std::uint16_t port) { return assist.sent(m, kLocalhost, port, now); }
   void hears(const Bytes& m) { assist.received(m, now); }
   /// Repeats what is due for so long.
   std::size_t pass(Duration time, bool calm = true) {
@@ -122,7 +122,7 @@ struct Talk {
     for (const Duration end = now + time; now < end; now += 10ms) {
       if (assist.next() > now) continue;
       assist.repeat(now, calm, [&](auto m, in_addr_t address, std::uint16_t port) {
-        EXPECT_EQ(address, kLoopback);
+        EXPECT_EQ(address, kLocalhost);
         EXPECT_EQ(port, kPortOfPeer);
         repeated.emplace_back(m.begin(), m.end());
       });
@@ -179,13 +179,13 @@ TEST(DiscoveryAssist, SaysAHeartbeatAgainWithAHigherCountUntilItIsAcknowledged) 
   talk.hears(announcement(2, kPortOfPeer));
   talk.hears(acknack(0));
   Bytes first = heartbeat(5, 1);
-  EXPECT_TRUE(talk.assist.sent(first, kLoopback, kPortOfPeer, talk.now));
+  EXPECT_TRUE(talk.assist.sent(first, kLocalhost, kPortOfPeer, talk.now));
   const auto count = [](const Bytes& m) { return m[m.size() - 4] + (m[m.size() - 3] << 8); };
   EXPECT_EQ(count(first), 16);
   EXPECT_EQ(talk.pass(3s), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(count(talk.repeated[i]), 17 + static_cast<int>(i));
   Bytes second = heartbeat(5, 2);
-  talk.assist.sent(second, kLoopback, kPortOfPeer, talk.now);
+  talk.assist.sent(second, kLocalhost, kPortOfPeer, talk.now);
   EXPECT_EQ(count(second), 32);
   EXPECT_EQ(talk.pass(3s, false), 0U);  // other things wait to be sent
   talk.hears(acknack(5));
@@ -270,7 +270,7 @@ TEST(DiscoveryAssist, CutShortOrStrangeMessagesAreOfNoConcern) {
     for (std::size_t n = 0; n < whole.size(); ++n) {
       Bytes cut(whole.begin(), whole.begin() + static_cast<long>(n));
       talk.hears(cut);
-      (void)talk.assist.sent(cut, kLoopback, 7410, talk.now);
+      (void)talk.assist.sent(cut, kLocalhost, 7410, talk.now);
     }
   }
   Bytes big_endian = announcement(2, kPortOfPeer);
