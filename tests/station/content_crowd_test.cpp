@@ -42,7 +42,7 @@ Content found(const std::string& robot, std::uint64_t id) {
 }
 
 /// A robot that sends all that it has until it is acknowledged, in any order.
-struct Robot {
+struct CrowdRobot {
   std::string name{};
   std::uint32_t session{};
   std::uint32_t last_id{};
@@ -94,7 +94,7 @@ class ContentCrowd : public testing::Test {
   ContentCrowd() {
     restart();
     for (std::size_t i = 0; i < 16; ++i) {
-      Robot robot{"r" + std::to_string(i), static_cast<std::uint32_t>(random.below(1000) + 2)};
+      CrowdRobot robot{"r" + std::to_string(i), static_cast<std::uint32_t>(random.below(1000) + 2)};
       robot.make_content(random);
       robots.push_back(std::move(robot));
     }
@@ -125,7 +125,7 @@ class ContentCrowd : public testing::Test {
     arrive(robot, 1, static_cast<std::uint32_t>(random.next() | 1), content);
   }
   /// One step of an honest robot over a link that loses, repeats, delays and reorders.
-  void send(Robot& robot) {
+  void send(CrowdRobot& robot) {
     for (int n = 0; n < 3 && !robot.done(); ++n) {
       std::size_t which = random.below(robot.contents.size());
       while (robot.acknowledged.contains(which)) which = (which + 1) % robot.contents.size();
@@ -147,7 +147,7 @@ class ContentCrowd : public testing::Test {
     return content;
   }
   /// What an enemy sends who speaks as an honest robot, or as himself.
-  void attack(Robot& robot) {
+  void attack(CrowdRobot& robot) {
     const Content& content = robot.contents[random.below(robot.contents.size())];
     const std::string enemy = "enemy" + std::to_string(random.below(2));
     switch (random.below(7)) {
@@ -186,7 +186,7 @@ class ContentCrowd : public testing::Test {
     if (!due) return;
     EXPECT_LE(due->size(), 16U);
     for (const auto& [name, receipt] : *due)
-      for (Robot& robot : robots)
+      for (CrowdRobot& robot : robots)
         if (robot.name == name && robot.session == receipt.session)
           std::erase_if(robot.sent, [&, &receipt = receipt](const auto& sent) {
             if (receipt.has(sent.first)) robot.acknowledged.insert(sent.second);
@@ -194,7 +194,7 @@ class ContentCrowd : public testing::Test {
           });
   }
   void step() {
-    for (Robot& robot : robots) send(robot);
+    for (CrowdRobot& robot : robots) send(robot);
     for (int n = 0; n < 8; ++n) attack(robots[random.below(robots.size())]);
     // Of each delay, what was sent first arrives first.
     for (auto it = air.begin(); it != air.end() && random.chance(0.97); it = air.erase(it)) it->second();
@@ -202,10 +202,10 @@ class ContentCrowd : public testing::Test {
     acknowledge();
   }
   bool all_done() const {
-    return std::all_of(robots.begin(), robots.end(), [](const Robot& robot) { return robot.done(); });
+    return std::all_of(robots.begin(), robots.end(), [](const CrowdRobot& robot) { return robot.done(); });
   }
   void expect_complete() const {
-    for (const Robot& robot : robots) {
+    for (const CrowdRobot& robot : robots) {
       const auto& has = replica->chunks().robots().at(robot.name);
       ASSERT_EQ(has.submaps.size(), robot.map.size()) << robot.name;
       for (const auto& [key, blocks] : robot.map) {
@@ -236,7 +236,7 @@ class ContentCrowd : public testing::Test {
   std::optional<PieceReader> reader{};
   std::optional<MapReplica> replica{};
   std::optional<FindingDesk> desk{};
-  std::vector<Robot> robots{};
+  std::vector<CrowdRobot> robots{};
   std::multimap<std::uint64_t, std::function<void()>> air{};
   std::uint64_t bad_map{}, bad_findings{}, unknown{};
 };
@@ -263,7 +263,7 @@ TEST_F(ContentCrowd, TheSixtyFifthRobotIsRefusedAndTheOthersStayComplete) {
   constexpr int few = kMaxRobots - 16;
   std::uint64_t surplus = 0;
   for (int n = 0; n < 1000 && !all_done(); ++n) {
-    for (Robot& robot : robots) send(robot);
+    for (CrowdRobot& robot : robots) send(robot);
     for (auto it = air.begin(); it != air.end(); it = air.erase(it)) it->second();
     const auto id = static_cast<std::uint32_t>(n + 1);
     // Each has something new all the time.

@@ -13,7 +13,7 @@ namespace adit::station {
 namespace {
 
 using perception::CoarseBlock;
-using Kind = TopView::Kind;
+using CellKind = TopView::Kind;
 
 /// Ground of 2.4 x 0.8 m at z 0; on its right third a wall of 2.4 m, in its middle a thing of 0.6 m.
 perception::VoxelImage some_image() {
@@ -32,9 +32,9 @@ TEST(TopView, TellsGroundFromLowThingsAndWalls) {
   const TopView view(some_image());
   ASSERT_EQ(view.nx(), 12);
   ASSERT_EQ(view.ny(), 4);
-  EXPECT_EQ(view.at(1, 1).kind, Kind::ground);
-  EXPECT_EQ(view.at(5, 1).kind, Kind::low);
-  EXPECT_EQ(view.at(9, 1).kind, Kind::high);
+  EXPECT_EQ(view.at(1, 1).kind, CellKind::ground);
+  EXPECT_EQ(view.at(5, 1).kind, CellKind::low);
+  EXPECT_EQ(view.at(9, 1).kind, CellKind::high);
   EXPECT_EQ(view.at(9, 1).height, 12);
 }
 
@@ -42,8 +42,8 @@ TEST(TopView, AFlatMapOfAPlanarLidarShowsItsWalls) {
   perception::VoxelImage image(0.2);
   image.add(Pose3{}, std::vector<CoarseBlock>{{{0, 0, 0}, 0xff, 0x01}});
   const TopView view(image);
-  EXPECT_EQ(view.at(0, 0).kind, Kind::high);
-  EXPECT_EQ(view.at(1, 1).kind, Kind::ground);
+  EXPECT_EQ(view.at(0, 0).kind, CellKind::high);
+  EXPECT_EQ(view.at(1, 1).kind, CellKind::ground);
 }
 
 TEST(MapPicture, IsWrittenAsAWhole) {
