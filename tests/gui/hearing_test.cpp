@@ -8,7 +8,7 @@
 namespace adit::gui {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 const HearingCell& cell(const HearingTable& table, const std::string& hearer, const std::string& speaker) {
   static const HearingCell none{.text = "no such cell"};
@@ -49,7 +49,7 @@ TEST(Hearing, LeavesBlankWhatNoneReports) {
 
 TEST(Hearing, NumbersThatAreNoneAndManyNamesDoNoHarm) {
   station::NetworkReport report = two_robots();
-  report.links[0].lost_from = kNan;
+  report.links[0].lost_from = kNotANumber;
   report.links[0].lost_to = 7.0;
   for (int i = 0; i < 500; ++i) report.agents[0].hears["s" + std::to_string(i)] = 0.1;
   const HearingTable table = hearing_table(report, "op1");
@@ -75,7 +75,8 @@ TEST(Budget, PartsFollowEachOtherByPriority) {
 
 TEST(Budget, NeverFillsMoreThanTheBar) {
   const station::AgentTraffic traffic{
-      .total_out = 1e30F, .classes_out = {{"bulk", 1e9}, {"state", -5.0}, {"status", kNan}, {"video", 1e9}}};
+      .total_out = 1e30F,
+      .classes_out = {{"bulk", 1e9}, {"state", -5.0}, {"status", kNotANumber}, {"video", 1e9}}};
   for (const double bandwidth : {8000.0, 1e-9}) {
     double end = 0.0;
     for (const BudgetPart& part : budget_parts(traffic, bandwidth)) {
@@ -84,7 +85,7 @@ TEST(Budget, NeverFillsMoreThanTheBar) {
     }
     EXPECT_NEAR(end, 1.0, 1e-9);
   }
-  for (const double none : {0.0, -1.0, kNan, std::numeric_limits<double>::infinity()})
+  for (const double none : {0.0, -1.0, kNotANumber, std::numeric_limits<double>::infinity()})
     EXPECT_TRUE(budget_parts(traffic, none).empty());
 }
 

@@ -110,10 +110,3 @@ TEST_F(Program, CommandsGoToTheStationAndTheirOutcomesCome) {
 
 }  // namespace
 }  // namespace adit::gui
-
-int main(int argc, char** argv) {
-  qputenv("QT_QPA_PLATFORM", "offscreen");
-  testing::InitGoogleTest(&argc, argv);
-  const QGuiApplication app(argc, argv);
-  return RUN_ALL_TESTS();
-}
