@@ -116,6 +116,8 @@ function(adit_test name)
     set(optimised TRUE)
   endif()
   adit_test_headers(test_${name} ${optimised})
+  # Parsing of headers is most of what a test takes to compile: more files share it than those of libraries.
+  set_target_properties(test_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
   set(group adit_tests)
   if("long" IN_LIST arg_LABELS)
     set(group adit_long_tests)
