@@ -199,10 +199,11 @@ std::optional<FailureLab::Hung> FailureLab::stay_hung(const std::string& compone
   Hung hung{};
   double first = 0.0;
   const pid_t pid = agent();
-  constexpr int kClouds = 10;  // received, so that stored ones would show; most are lost on small sockets
+  constexpr int kClouds = 50;  // received, so that stored ones would show
   const Time begin = now();
   const auto goes_on = [&] {
-    return now() - begin < time || (clouds.load() < kClouds && now() - begin < time + 30s);
+    return now() - begin < time ||
+           (clouds.load() < kClouds && now() - begin < time + from_seconds(30.0 * patience()));
   };
   for (; goes_on(); net_->pass(100ms)) {
     hung.megabytes = std::max(hung.megabytes, resident_memory(pid));

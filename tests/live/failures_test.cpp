@@ -72,7 +72,9 @@ Duration hung_time() {
 }
 
 TEST(Memory, StaysBoundedWhileSensorsHangAndLargeCloudsArrive) {
-  constexpr std::size_t cloud = 1'600'000;  // bytes
+  // Bytes. The largest that a socket of Linux's default size holds: of larger ones nearly none arrives on a
+  // busy machine. 50 of them are twice the growth below.
+  constexpr std::size_t cloud = 300'000;
   FailureLab lab;
   ASSERT_TRUE(lab.ready()) << lab.err();
   const auto hung = lab.stay_hung("sensors", cloud, hung_time());
@@ -80,7 +82,7 @@ TEST(Memory, StaysBoundedWhileSensorsHangAndLargeCloudsArrive) {
   std::printf("resident %.1f MB, growth %.1f MB, %d clouds\n", hung->megabytes, hung->growth, hung->clouds);
   EXPECT_LT(hung->megabytes, 200.0);
   EXPECT_LT(hung->growth, 8.0);
-  EXPECT_GE(hung->clouds, 10) << "too few arrive to show anything";
+  EXPECT_GE(hung->clouds, 50) << "too few arrive to show anything";
 }
 
 }  // namespace
