@@ -304,6 +304,17 @@ void Expectations::judge(Duration now, const Evidence& evidence) {
   }
 }
 
+bool Expectations::all_settled() const {
+  bool timed = false;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const Expectation& e = scenario_.expectations[i];
+    if (std::holds_alternative<AtLeast>(e.what) || (e.when != When::always && !states_[i].settled))
+      return false;
+    timed = timed || e.when != When::always;
+  }
+  return timed;
+}
+
 std::vector<ExpectationResult> Expectations::finish(const Evidence& evidence, const RunReport& report) {
   std::vector<ExpectationResult> out;
   for (std::size_t i = 0; i < states_.size(); ++i) {

@@ -36,6 +36,9 @@ class Expectations {
   std::vector<Duration> instants() const;
   /// To be called at those instants and at 50 Hz, with everything until `now` done.
   void judge(Duration now, const Evidence& evidence);
+  /// Whether every expectation that has a time is settled; false when there is none, or when something is
+  /// counted until the end of the run.
+  bool all_settled() const;
   /// At the end of the run: what never came, and what is counted over the whole of it.
   std::vector<ExpectationResult> finish(const Evidence& evidence, const RunReport& report);
 

@@ -80,7 +80,9 @@ class Run {
     for (const Duration instant : instants()) {
       scheduler_.run_until(instant);
       observe(instant);
-      if (params_.ended && instant % Trail::kPeriod == 0ns && params_.ended({instant, simulation_, witness_}))
+      if (params_.ended && instant % Trail::kPeriod == 0ns &&
+          params_.ended(
+              {instant, simulation_, witness_, instant >= last_event_ && expectations_.all_settled()}))
         break;
     }
     RunOutcome out;
@@ -153,7 +155,12 @@ class Run {
     const Draws drawn = draw(scenario_, params_.seed);
     schedule(drawn.script);
     for (const std::vector<Fault>* faults : {&scenario_.faults, &drawn.faults})
-      for (const Fault& fault : *faults) faults_.schedule(fault);
+      for (const Fault& fault : *faults) {
+        faults_.schedule(fault);
+        Fault copy = fault;
+        const Duration* lasts = duration_of(copy);
+        last_event_ = std::max(last_event_, fault.at + (lasts ? *lasts : Duration{}));
+      }
     return {};
   }
 
@@ -181,8 +188,10 @@ class Run {
   }
 
   void schedule(const std::vector<ScriptLine>& lines) {
-    for (const ScriptLine& line : lines)
+    for (const ScriptLine& line : lines) {
       scheduler_.at(line.at, [this, line] { stations_.at(line.by)->type(line.command); });
+      last_event_ = std::max(last_event_, line.at);
+    }
   }
 
   // 50 Hz, and whenever an expectation wants to be judged.
@@ -332,6 +341,7 @@ class Run {
   std::vector<Trail> people_{};
   std::map<std::string, std::map<std::string, double>> mode_seconds_{};
   Duration observed_{};
+  Duration last_event_{};  ///< When the last line of the script is typed and the last fault has ended.
 };
 
 }  // namespace

@@ -23,6 +23,8 @@ struct RunState {
   Duration now{};
   const Simulation& simulation;
   const Witness& witness;
+  /// The run's expectations are settled, and no line of the script and no fault is still to come or lasts.
+  bool decided{};
 };
 
 struct RunParams {

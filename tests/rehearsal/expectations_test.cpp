@@ -70,6 +70,23 @@ TEST(Expectations, AStationThatIsDeadOrHasOthersIsTold) {
   EXPECT_EQ(d.finish().found, "it has 3");
 }
 
+TEST(Expectations, AreSettledOnceEachThatHasATimeIs) {
+  Case c({When::by, 10s, NearExpectation{"r1", 3.0, 4.0, 0.5}, 1, ""});
+  c.scenario.expectations.push_back({When::always, {}, NoCollision{}, 2, ""});
+  c.expectations.emplace(c.scenario);
+  c.expectations->judge(1s, c.evidence);
+  EXPECT_FALSE(c.expectations->all_settled());
+  c.pose = {3.2, 4.1, 0.0};
+  c.expectations->judge(2s, c.evidence);
+  EXPECT_TRUE(c.expectations->all_settled());
+  c.scenario.expectations.push_back({When::always, {}, AtLeast{"distance", 1.0}, 3, ""});
+  c.expectations.emplace(c.scenario);
+  c.expectations->judge(2s, c.evidence);
+  EXPECT_FALSE(c.expectations->all_settled()) << "the distance is counted until the end";
+  Case none({When::always, {}, NoCollision{}, 1, ""});
+  EXPECT_FALSE(none.expectations->all_settled()) << "nothing says when";
+}
+
 TEST(Expectations, ByHoldsWhenItWasSoOnceBefore) {
   Case c({When::by, 10s, NearExpectation{"r1", 3.0, 4.0, 0.5}, 1, ""});
   c.pose = {3.2, 4.1, 0.0};
