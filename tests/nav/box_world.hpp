@@ -47,19 +47,25 @@ struct BoxWorld {
     std::vector<Eigen::Vector3f> points;
     points.reserve(static_cast<std::size_t>(rings * columns));
     const Eigen::Vector3d from(body.x, body.y, height);
-    for (int column = 0; column < columns; ++column)
-      for (int ring = 0; ring < rings; ++ring) {
-        const double bearing = 2 * M_PI * column / columns;
-        const double elevation =
-            rings == 1 ? 0.0 : (lowest + (15.0 - lowest) * ring / (rings - 1)) * M_PI / 180.0;
-        const Eigen::Vector3d local(std::cos(elevation) * std::cos(bearing),
-                                    std::cos(elevation) * std::sin(bearing), std::sin(elevation));
-        const Eigen::Vector3d direction = Eigen::AngleAxisd(body.yaw, Eigen::Vector3d::UnitZ()) * local;
+    const Eigen::Matrix3d R(Eigen::AngleAxisd(body.yaw, Eigen::Vector3d::UnitZ()));
+    std::vector<Eigen::Vector2d> elevations;  // cosine, sine
+    for (int ring = 0; ring < rings; ++ring) {
+      const double elevation =
+          rings == 1 ? 0.0 : (lowest + (15.0 - lowest) * ring / (rings - 1)) * M_PI / 180.0;
+      elevations.emplace_back(std::cos(elevation), std::sin(elevation));
+    }
+    for (int column = 0; column < columns; ++column) {
+      const double bearing = 2 * M_PI * column / columns;
+      const double cosine = std::cos(bearing), sine = std::sin(bearing);
+      for (const Eigen::Vector2d& up : elevations) {
+        const Eigen::Vector3d local(up.x() * cosine, up.x() * sine, up.y());
+        const Eigen::Vector3d direction = R * local;
         const double range = cast(from, direction);
         if (range >= 100.0) continue;
         const Eigen::Vector3d point = local * (range + noise * error(random));
         points.push_back((point + Eigen::Vector3d(0, 0, height)).cast<float>());
       }
+    }
     return points;
   }
 

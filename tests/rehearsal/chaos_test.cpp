@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults and commands drawn from seeds; and that a seed that fails is shrunk to a scenario that fails by
 // itself.
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <thread>
 
-#include "sim/rehearsal/rehearsal.hpp"
-#include "sim/rehearsal/scenario_file.hpp"
 #include "sim/rehearsal/shrink.hpp"
-#include "tests/folders/folders.hpp"
+#include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
 namespace {
 
-Scenario team() {
-  auto scenario = load_scenario(source_folder() + "/config/scenarios/team_chaos.yaml");
-  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
-  return *scenario;
+Scenario team() { return load_shipped("team_chaos.yaml"); }
+
+/// Of the same kind, in a quarter of the time.
+Scenario short_team() {
+  Scenario scenario = team();
+  scenario.duration = 15s;
+  scenario.random->commands = 24;
+  scenario.random_faults->faults = 6;
+  scenario.random->to = scenario.random_faults->to = 13s;
+  return scenario;
 }
 
 RunReport run_chaos(const Scenario& scenario, std::uint64_t seed, const std::string& defect = {}) {
@@ -31,9 +33,9 @@ RunReport run_chaos(const Scenario& scenario, std::uint64_t seed, const std::str
   return std::move(outcome->report);
 }
 
-TEST(Chaos, TwentySeedsBreakNoRule) {
+TEST(Chaos, SeedsBreakNoRule) {
   const Scenario scenario = team();
-  std::vector<RunReport> reports(20);
+  std::vector<RunReport> reports(seeds(4, 20));
   {
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
@@ -50,23 +52,24 @@ TEST(Chaos, TwentySeedsBreakNoRule) {
 }
 
 TEST(Chaos, WhatASeedDrawsCanBeWrittenOutAndIsTheSameRun) {
-  const Scenario scenario = team();
+  const Scenario scenario = short_team();
   const Scenario written = written_out(scenario, 5);
   EXPECT_FALSE(written.random);
-  EXPECT_EQ(run_chaos(written, 5).digest, run_chaos(scenario, 5).digest);
+  const std::string digest = run_chaos(scenario, 5).digest;
+  EXPECT_EQ(run_chaos(written, 5).digest, digest);
   const auto text = to_text(written, {6, 0, 3s, "r1: x"}, "again.yaml");
   ASSERT_TRUE(text.ok()) << text.error().text;
   const auto again = parse_scenario(*text, "again.yaml");
   ASSERT_TRUE(again.ok()) << again.error().text;
   EXPECT_EQ(again->seed, 5U);
-  EXPECT_EQ(run_chaos(*again, 5).digest, run_chaos(scenario, 5).digest);
+  EXPECT_EQ(run_chaos(*again, 5).digest, digest);
 }
 
 TEST(Chaos, AFailingSeedIsShrunkToAScenarioThatFailsByItself) {
   const std::string defect = "joystick_clears_stop";
-  const Scenario scenario = team();
+  const Scenario scenario = short_team();
   std::optional<Failure> failure;
-  std::uint64_t seed = 0;
+  std::uint64_t seed = 7;  // The next one fails after 4 s: the runs that shrink it are as short.
   while (!failure && seed < 200) failure = failure_of(scenario, run_chaos(scenario, ++seed, defect));
   ASSERT_TRUE(failure);
   const ShrinkResult small =

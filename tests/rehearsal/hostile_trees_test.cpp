@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Trees that contradict the mode table, in rehearsal with the check at load switched off: no rule is broken,
-// because the guard in front of the mux enforces the table. ADIT_HOSTILE_SEEDS: seeds for each tree, 2 unless
+// because the guard in front of the mux enforces the table. ADIT_HOSTILE_SEEDS: seeds for each tree, 1 unless
 // given.
 #include "tests/rehearsal/hostile_trees.hpp"
 
@@ -53,7 +53,7 @@ random_faults:
 
 std::uint64_t hostile_seeds() {
   const char* given = std::getenv("ADIT_HOSTILE_SEEDS");
-  return given ? std::strtoull(given, nullptr, 10) : 2;
+  return given ? std::strtoull(given, nullptr, 10) : 1;
 }
 
 class HostileTreeRun : public testing::TestWithParam<std::string> {};

@@ -13,6 +13,7 @@ namespace {
 RunReport run_seed(const Scenario& scenario, std::uint64_t seed) {
   RunParams params;
   params.seed = seed;
+  params.ended = once_decided();
   params.make_agent = *make_agent_factory();
   auto outcome = rehearse(scenario, *make_world(scenario.world), params);
   EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
@@ -22,12 +23,19 @@ RunReport run_seed(const Scenario& scenario, std::uint64_t seed) {
 TEST(People, TwoRobotsPassThemAndEachOther) {
   const Scenario scenario = load_shipped("people.yaml");
   // In 2 of the first 40 seeds, 3 and 38, a robot touches one of them.
-  for (const std::uint64_t seed : {1, 2, 4}) expect_ok(run_seed(scenario, seed));
+  for (const std::uint64_t seed : {1, 2, 4})
+    if (seed == 1 || all_seeds()) expect_ok(run_seed(scenario, seed));
 }
 
 TEST(People, SixteenRingsShowThemAsWell) {
   Scenario scenario = load_shipped("people.yaml");
   scenario.lidar = LidarKind::full;
+  // They meet in the first 45 s; with a planar lidar, above, they are followed to their goals.
+  if (!all_seeds()) {
+    scenario.duration = 45s;
+    std::erase_if(scenario.expectations,
+                  [](const Expectation& e) { return e.when == Expectation::When::by; });
+  }
   expect_ok(run_seed(scenario, 1));
 }
 
@@ -50,13 +58,13 @@ TEST(People, WhoYieldToNobodyAreTheOnesWhoRunIntoTheRobot) {
 
 TEST(HeadOn, InACorridorOfTwoMetresTwentyTheyPass) {
   const Scenario scenario = load_shipped("head_on.yaml");
-  for (std::uint64_t seed = 1; seed <= seeds(2, 4); ++seed) expect_ok(run_seed(scenario, seed));
+  for (std::uint64_t seed = 1; seed <= seeds(1, 4); ++seed) expect_ok(run_seed(scenario, seed));
 }
 
 TEST(HeadOn, TwoOfAKindPassToo) {
   Scenario scenario = load_shipped("head_on.yaml");
   scenario.robots[1].platform = "wheeled";
-  for (std::uint64_t seed = 1; seed <= seeds(2, 4); ++seed) expect_ok(run_seed(scenario, seed));
+  for (std::uint64_t seed = 1; seed <= seeds(1, 4); ++seed) expect_ok(run_seed(scenario, seed));
 }
 
 }  // namespace

@@ -3,11 +3,7 @@
 // one.
 #include "sim/rehearsal/radio_walls.hpp"
 
-#include <gtest/gtest.h>
-
-#include "sim/rehearsal/rehearsal.hpp"
-#include "sim/rehearsal/scenario_file.hpp"
-#include "tests/folders/folders.hpp"
+#include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
 namespace {
@@ -28,11 +24,7 @@ TEST(RadioWalls, WhatIsRememberedIsForgottenBeforeItGrowsWithoutEnd) {
   EXPECT_NEAR(walls({0, 0, 0}, {8, 0, 0}), 20.0, 1e-9);
 }
 
-Scenario pillar() {
-  auto scenario = load_scenario(source_folder() + "/config/scenarios/behind_the_wall.yaml");
-  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
-  return *scenario;
-}
+Scenario pillar() { return load_shipped("behind_the_wall.yaml"); }
 
 RunReport run(const Scenario& scenario) {
   RunParams params;

@@ -24,8 +24,10 @@ namespace adit::sim {
 namespace {
 
 RunOutcome run(const Scenario& scenario, std::uint64_t seed, int workers = 2,
-               std::shared_ptr<const World> world = nullptr) {
+               std::shared_ptr<const World> world = nullptr,
+               std::function<bool(const RunState&)> ended = {}) {
   RunParams params;
+  params.ended = std::move(ended);
   params.seed = seed;
   params.workers = workers;
   params.make_agent = *make_agent_factory();
@@ -34,11 +36,12 @@ RunOutcome run(const Scenario& scenario, std::uint64_t seed, int workers = 2,
   return std::move(*outcome);
 }
 
-TEST(Rehearse, SameSeedSameDigestWhateverTheWorkers) {
+TEST(Rehearse, SameSeedSameDigestWhateverTheWorkersAndAnotherSeedAnotherDigest) {
   const Scenario scenario = load_shipped("handover.yaml");
   const std::string digest = run(scenario, 3).report.digest;
   EXPECT_EQ(run(scenario, 3).report.digest, digest);
   EXPECT_EQ(run(scenario, 3, 1).report.digest, digest);
+  EXPECT_NE(run(scenario, 4).report.digest, digest);
 }
 
 TEST(Rehearse, EndsWhenItsCallerSaysSo) {
@@ -57,15 +60,16 @@ struct Shortened {
 };
 class RehearsalThreads : public testing::TestWithParam<Shortened> {};
 
-TEST_P(RehearsalThreads, OneTwoAndFourGiveTheSameDigestTwice) {
+TEST_P(RehearsalThreads, OneTwoAndFourGiveTheSameDigest) {
   Scenario scenario = load_shipped(GetParam().file);
-  if (std::getenv("ADIT_WHOLE_SCENARIOS") == nullptr) {
+  const bool whole = std::getenv("ADIT_WHOLE_SCENARIOS") != nullptr;
+  if (!whole) {
     scenario.duration = GetParam().duration;
     scenario.expectations.clear();  // a run lasts until the last of them
   }
   const auto world = make_world(scenario.world).value();
   const std::string digest = run(scenario, scenario.seed, 1, world).report.digest;
-  for (const int threads : {2, 4, 1, 2, 4})
+  for (const int threads : whole ? std::vector{2, 4, 1, 2, 4} : std::vector{2, 4})
     EXPECT_EQ(run(scenario, scenario.seed, threads, world).report.digest, digest) << threads << " threads";
   std::printf("%s: %s\n", GetParam().file, digest.c_str());
 }
@@ -92,11 +96,6 @@ double started_at(const std::string& key) {
 TEST(Rehearse, ARobotStartsOnTheGroundOfTheWorldUnlessItsHeightIsGiven) {
   EXPECT_EQ(started_at(""), 2.0);
   EXPECT_EQ(started_at(", start_height: 7"), 7.0);
-}
-
-TEST(Rehearse, AnotherSeedAnotherDigest) {
-  const Scenario scenario = load_shipped("handover.yaml");
-  EXPECT_NE(run(scenario, 3).report.digest, run(scenario, 4).report.digest);
 }
 
 TEST(Rehearse, SameSeedSameDigestThroughACrash) {
@@ -168,14 +167,26 @@ TEST(Rehearse, ReportHasEveryField) {
   EXPECT_EQ(outcome.goals.size(), 1U);
 }
 
-/// Every scenario that is short enough; the demo has its own test.
+/// The beginning of a scenario, with the expectations that fall into it.
+Scenario beginning(Scenario scenario, Duration duration) {
+  scenario.duration = duration;
+  std::erase_if(scenario.expectations, [&](const Expectation& e) {
+    return e.time > duration || std::holds_alternative<AtLeast>(e.what);
+  });
+  return scenario;
+}
+
+/// Every scenario that is short enough.
 class Scenarios : public testing::TestWithParam<const char*> {};
 
 TEST_P(Scenarios, EverythingHolds) {
-  const Scenario scenario = load_shipped(std::string(GetParam()) + ".yaml");
-  const bool large = scenario.robots.size() > 5;
-  for (std::uint64_t seed = 1; seed <= seeds(large ? 1 : 3, 3); ++seed) {
-    const RunReport report = run(scenario, seed).report;
+  const std::string name = GetParam();
+  Scenario scenario = load_shipped(name + ".yaml");
+  // The two that cost most. With a planar lidar, below, the demo is judged to its end.
+  if (name == "demo" && !all_seeds()) scenario = beginning(scenario, 30s);
+  if (name == "ten_robots" && !all_seeds()) scenario = beginning(scenario, 22s);
+  for (std::uint64_t seed = 1; seed <= seeds(1, 3); ++seed) {
+    const RunReport report = run(scenario, seed, 2, nullptr, once_decided()).report;
     for (const std::string& line : report.complaints()) ADD_FAILURE() << "seed " << seed << ": " << line;
     if (scenario.lidar == LidarKind::full) break;  // one seed of those that take seconds
   }
@@ -195,7 +206,7 @@ TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {
   Scenario scenario = load_shipped("demo.yaml");
   scenario.lidar = LidarKind::planar;
   for (RobotSpec& robot : scenario.robots) robot.settings.perception = PerceptionLevel::off;
-  for (std::uint64_t seed = 1; seed <= seeds(2, 4); ++seed)
+  for (std::uint64_t seed = 1; seed <= seeds(1, 4); ++seed)
     for (const std::string& line : run(scenario, seed).report.complaints())
       ADD_FAILURE() << "seed " << seed << ": " << line;
 }
@@ -205,7 +216,7 @@ class Storm : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(Storm, EveryRuleHolds) {
   const Scenario scenario = load_shipped("authority_storm.yaml");
-  for (std::uint64_t i = 0; i < seeds(2, 5); ++i) {
+  for (std::uint64_t i = 0; i < seeds(1, 10); ++i) {
     const RunReport report = run(scenario, GetParam() + i, 1).report;
     for (const std::string& line : report.complaints())
       ADD_FAILURE() << "seed " << GetParam() + i << ": " << line;
@@ -217,14 +228,14 @@ TEST_P(Storm, EveryRuleHolds) {
 // The same with crashes, cuts, a hanging stick and a forger.
 TEST_P(Storm, EveryRuleHoldsUnderFaults) {
   const Scenario scenario = load_shipped("fault_storm.yaml");
-  for (std::uint64_t i = 0; i < seeds(2, 5); ++i) {
+  for (std::uint64_t i = 0; i < seeds(1, 10); ++i) {
     const RunReport report = run(scenario, GetParam() + i, 1).report;
     for (const std::string& line : report.complaints())
       ADD_FAILURE() << "seed " << GetParam() + i << ": " << line;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Storm, testing::Values(1, 6, 11, 16));
+INSTANTIATE_TEST_SUITE_P(Seeds, Storm, testing::Values(1, 11));
 
 }  // namespace
 }  // namespace adit::sim

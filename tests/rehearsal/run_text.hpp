@@ -12,9 +12,17 @@
 
 namespace adit::sim {
 
-/// Number of seeds of a case: `few`, or with ADIT_ALL_SEEDS in the environment (tests of label long) `all`.
-inline std::uint64_t seeds(std::uint64_t few, std::uint64_t all) {
-  return std::getenv("ADIT_ALL_SEEDS") != nullptr ? all : few;
+/// Whether cases run all their seeds, each for as long as its scenario: ADIT_ALL_SEEDS in the environment
+/// (tests of label long).
+inline bool all_seeds() { return std::getenv("ADIT_ALL_SEEDS") != nullptr; }
+inline std::uint64_t seeds(std::uint64_t few, std::uint64_t all) { return all_seeds() ? all : few; }
+
+/// Ends a run one second after all its expectations are settled, and with all_seeds() never.
+inline std::function<bool(const RunState&)> once_decided() {
+  return [since = Duration::max()](const RunState& state) mutable {
+    since = state.decided ? std::min(since, state.now) : Duration::max();
+    return !all_seeds() && state.decided && state.now >= since + 1s;
+  };
 }
 
 /// A scenario of config/scenarios.
@@ -32,7 +40,8 @@ inline void expect_ok(const RunReport& report) {
       std::printf("%6.1f %s %s\n", seconds(event.at), event.robot.c_str(), event.text.c_str());
 }
 
-/// What a scenario written in a test comes to; `defect`: one of sim/defects, none when empty.
+/// What a scenario written in a test comes to, once it is decided; `defect`: one of sim/defects, none when
+/// empty.
 inline RunReport run_text(const std::string& yaml, const char* file, const std::string& defect = "") {
   auto scenario = parse_scenario(yaml, file);
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
@@ -42,6 +51,7 @@ inline RunReport run_text(const std::string& yaml, const char* file, const std::
   params.make_agent = *factory;
   params.parent_wire = make_parent_decorator(defect);
   params.seed = scenario->seed;
+  params.ended = once_decided();
   auto outcome = rehearse(*scenario, *make_world(scenario->world), params);
   EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
   return outcome->report;

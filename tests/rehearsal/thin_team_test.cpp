@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Many on a thin link: rates follow it, and commands keep their latency.
-#include <gtest/gtest.h>
-
-#include "sim/rehearsal/rehearsal.hpp"
-#include "sim/rehearsal/scenario_file.hpp"
-#include "tests/folders/folders.hpp"
+#include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
 namespace {
 
-RunReport run(const wire::LinkProfile* link) {
-  auto scenario = load_scenario(source_folder() + "/config/scenarios/thin_team.yaml");
-  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
-  if (link != nullptr) scenario->link = *link;
+RunReport run_thin_team(const Scenario& scenario) {
   RunParams params;
   params.make_agent = *make_agent_factory();
-  auto outcome = rehearse(*scenario, *make_world(scenario->world), params);
+  auto outcome = rehearse(scenario, *make_world(scenario.world), params);
   EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
   return outcome->report;
 }
@@ -23,7 +16,7 @@ RunReport run(const wire::LinkProfile* link) {
 constexpr double kRobots = 6, kStations = 3, kTime = 90;  // s
 
 TEST(ThinTeam, StatesKeepToTheLinkAndStopsGetThrough) {
-  const RunReport report = run(nullptr);
+  const RunReport report = run_thin_team(load_shipped("thin_team.yaml"));
   EXPECT_TRUE(report.ok()) << (report.complaints().empty() ? "" : report.complaints().front());
   const auto& states = report.topics.at("adit/robot_state");
   EXPECT_LT(static_cast<double>(states.samples), 7.0 * kRobots * kTime);
@@ -34,9 +27,14 @@ TEST(ThinTeam, StatesKeepToTheLinkAndStopsGetThrough) {
 
 TEST(ThinTeam, WithRoomForAllTheyComeTenTimesASecond) {
   const wire::LinkProfile room{.name = "room", .bandwidth = 10e6, .latency = 0.05};
-  const RunReport report = run(&room);
+  Scenario scenario = load_shipped("thin_team.yaml");
+  scenario.link = room;
+  scenario.duration = 30s;
+  scenario.expectations.clear();  // A run lasts until the last of them.
+  const RunReport report = run_thin_team(scenario);
   const auto& states = report.topics.at("adit/robot_state");
-  EXPECT_NEAR(static_cast<double>(states.samples), 10.0 * kRobots * kTime, 0.03 * 10.0 * kRobots * kTime);
+  constexpr double kStates = 10.0 * kRobots * 30;
+  EXPECT_NEAR(static_cast<double>(states.samples), kStates, 0.03 * kStates);
 }
 
 }  // namespace

@@ -13,10 +13,13 @@ namespace {
 
 class Generated : public testing::TestWithParam<std::string_view> {};
 
-/// Where a body of the given width, height and step gets to from the start, by columns of 0.1 m.
-double reachable(const GeneratedWorld& made, double width, double step) {
-  const World world = make_box_world(made.boxes, 0.0, 3.0).value();
-  const StandingMap map(world, 0.6, step);
+/// Where a body 0.6 m high, which takes such a step, can be.
+StandingMap standing_map(const GeneratedWorld& made, double step) {
+  return StandingMap(make_box_world(made.boxes, 0.0, 3.0).value(), 0.6, step);
+}
+
+/// How much of the world a body of the given width gets to from the start, by columns of 0.1 m.
+double reachable(const GeneratedWorld& made, const StandingMap& map, double width) {
   const int nx = static_cast<int>(made.size.x() * 10), ny = static_cast<int>(made.size.y() * 10);
   std::vector<std::uint8_t> seen(static_cast<std::size_t>(nx) * ny);
   std::deque<std::pair<int, int>> open{
@@ -40,10 +43,9 @@ TEST_P(Generated, IsTheSameForASeedAndGivesAWay) {
     const auto made = generate_world(GetParam(), seed);
     ASSERT_TRUE(made) << made.error().text;
     EXPECT_EQ(made->boxes, generate_world(GetParam(), seed)->boxes);
-    const World world = make_box_world(made->boxes, 0.0, 3.0).value();
-    EXPECT_GT(StandingMap(world, 0.6, 0.08).distance(made->start.x(), made->start.y()), 0.9)
-        << "seed " << seed;
-    EXPECT_GT(reachable(*made, 0.6, 0.08), 0.15) << "seed " << seed;
+    const StandingMap map = standing_map(*made, 0.08);
+    EXPECT_GT(map.distance(made->start.x(), made->start.y()), 0.9) << "seed " << seed;
+    EXPECT_GT(reachable(*made, map, 0.6), 0.15) << "seed " << seed;
   }
 }
 
@@ -73,7 +75,8 @@ TEST(GeneratedWorlds, SeedsDiffer) {
 
 TEST(GeneratedWorlds, StairsAreForWhoClimbsThem) {
   const auto made = generate_world("stairs", 1).value();
-  EXPECT_GT(reachable(made, 0.5, 0.22), reachable(made, 0.5, 0.08) + 0.1);
+  EXPECT_GT(reachable(made, standing_map(made, 0.22), 0.5),
+            reachable(made, standing_map(made, 0.08), 0.5) + 0.1);
 }
 
 TEST(GeneratedWorlds, WhatIsNoKindIsAnError) {
