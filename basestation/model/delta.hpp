@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "basestation/model/numbering.hpp"
 #include "basestation/model/world.hpp"
 #include "core/result/result.hpp"
 
@@ -43,7 +44,7 @@ class WorldBuilder {
   Result<void> apply(const nlohmann::json& delta);
   /// Adds a notice; the newest kMaxNotices are stored.
   void add(const Notice& notice);
-  /// Ages count up to the time of the last difference.
+  /// Ages count up to the time of the last difference; robots and stations are in natural order of names.
   World world() const;
 
  private:
@@ -57,7 +58,7 @@ class WorldBuilder {
     double heard{};
   };
   template <class T>
-  using Parts = std::map<std::string, Part<T>>;
+  using Parts = std::map<std::string, Part<T>, NaturalOrder>;
   template <class T, class Read>
   static Result<void> merge(const nlohmann::json& delta, const char* key, double at, const Read& read,
                             Parts<T>& parts);

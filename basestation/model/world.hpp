@@ -34,7 +34,7 @@ struct World {
   std::string station{};  ///< Name of the operator.
   std::string link{};     ///< Link profile; empty: the traffic is not limited.
   Counts commands{};
-  std::vector<Robot> robots{};             ///< By name.
+  std::vector<Robot> robots{};             ///< By name; in natural order at front ends.
   std::vector<StationSummary> stations{};  ///< This station first.
   std::vector<Notice> notices{};           ///< The newest, oldest first.
   std::map<std::string, AgentRate> traffic{};

@@ -36,7 +36,7 @@ class Fiction {
   void join() {
     const std::string name = "r" + std::to_string(++robots_);
     world_.robots.push_back({.name = name, .mode = "hold"});
-    std::ranges::sort(world_.robots, {}, &Robot::name);
+    std::ranges::sort(world_.robots, NaturalOrder{}, &Robot::name);
     world_.traffic[name] = {1.0, 2.0, 0.0};
   }
   void change() {
@@ -155,6 +155,18 @@ TEST_F(DeltaTest, MotionIsLessUrgentThanWhatAnOperatorActsOn) {
   EXPECT_FALSE(after(now).json["robots"]["r1"].contains("mode"));
   now.robots[0].stops = {"op2"};
   EXPECT_EQ(after(now).urgency, Urgency::change);
+}
+
+TEST_F(DeltaTest, RobotsAreInNaturalOrder) {
+  WorldBuilder builder;
+  before_.robots.push_back({.name = "r10"});
+  ASSERT_TRUE(builder.start(json_of(before_)));
+  World now = before_;
+  now.robots.push_back({.name = "r3"});
+  ASSERT_TRUE(builder.apply(after(now).json));
+  std::vector<std::string> names;
+  for (const Robot& robot : builder.world().robots) names.push_back(robot.name);
+  EXPECT_THAT(names, testing::ElementsAre("r1", "r2", "r3", "r10"));
 }
 
 TEST_F(DeltaTest, AGoalOnTheGroundIsNotNewEachTime) {

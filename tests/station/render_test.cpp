@@ -93,6 +93,15 @@ TEST(Render, ShowsRobotsNewestNoticesAndKeys) {
   EXPECT_THAT(page, HasSubstr("m drive ? q"));
 }
 
+TEST(Render, ARobotHasTheNumberOfItsName) {
+  World world = fleet(10);
+  std::ranges::sort(world.robots, {}, &Robot::name);
+  const std::string page = text(render(world, {.selected = "r1"}, 24, 80, false));
+  EXPECT_THAT(page, HasSubstr(" 2 r2 "));
+  EXPECT_THAT(page, HasSubstr(" 9 r9 "));
+  EXPECT_THAT(page, HasSubstr("   r10 ")) << "no key selects it";
+}
+
 TEST(Render, TheSelectedRobotStaysInView) {
   EXPECT_THAT(text(render(fleet(40), {.selected = "r40"}, 24, 80, false)), HasSubstr("> "));
   EXPECT_THAT(text(render(fleet(40), {.selected = "r40"}, 24, 80, false)), HasSubstr("r40"));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "basestation/model/numbering.hpp"
 #include "basestation/report/table.hpp"
 #include "core/command/words.hpp"
 
@@ -113,6 +114,7 @@ void robots(Page& page, const World& world, const WatchState& state) {
               padded("AGE", 5, true) + (spare > 6 ? padded("B/S", 6, true) : "")}},
             kBold);
   const std::vector<Robot>& list = world.robots;
+  const std::vector<int> numbers = numbers_of(world);
   // Keeps the selected robot in view.
   const std::size_t room = page.left() > 8 ? page.left() - 8 : 1;
   std::size_t chosen = 0;
@@ -127,7 +129,7 @@ void robots(Page& page, const World& world, const WatchState& state) {
     const double speed = robot.located ? std::hypot(robot.vx, robot.vy) : nan;
     const double yaw = robot.located ? robot.yaw * 180.0 / std::numbers::pi : nan;
     std::vector<Cell> cells{{selected ? "> " : "  "},
-                            {i < 9 ? std::to_string(i + 1) + " " : "  ", kDim},
+                            {numbers[i] <= 9 ? std::to_string(numbers[i]) + " " : "  ", kDim},
                             {padded(robot.name, name_width), selected ? kBold : ""},
                             {padded(robot.platform, 7), ""},
                             mode_cell(robot, mode_width),

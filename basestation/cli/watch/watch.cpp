@@ -15,6 +15,7 @@
 #include "basestation/cli/watch/render.hpp"
 #include "basestation/input/key_stick.hpp"
 #include "basestation/input/keys.hpp"
+#include "basestation/model/numbering.hpp"
 
 namespace adit::station::cli {
 namespace {
@@ -154,9 +155,7 @@ class Dashboard {
     } else if (key == key_up || key == key_down) {
       select(key == key_up ? -1 : 1);
     } else if (key >= '1' && key <= '9') {
-      const auto names = names_of(world_);
-      const auto index = static_cast<std::size_t>(key - '1');
-      if (index < names.size()) state_.selected = names[index];
+      if (const Robot* robot = robot_with_number(world_, key - '0')) state_.selected = robot->name;
     } else if (!state_.selected.empty()) {
       command(key);
     }
