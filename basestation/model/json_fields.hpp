@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "basestation/model/action.hpp"
 #include "basestation/model/json_reader.hpp"
 #include "basestation/model/outcome.hpp"
 #include "basestation/model/world.hpp"
@@ -18,9 +19,13 @@ void fields(Io& io, Of<Io, Epoch>& epoch) {
 
 template <class Io>
 void fields(Io& io, Of<Io, ModeChoice>& choice) {
-  io.field("mode", choice.mode);
-  io.field("available", choice.available);
-  io.field("reason", choice.reason);
+  // What the station can enter: it adds a centred stick to a mode that is driven by hand.
+  const bool by_stick = !Io::kReads && !choice.available && can_enter(choice);
+  ModeChoice shown = by_stick ? ModeChoice{choice.mode, true, Reason::none} : choice;
+  io.field("mode", shown.mode);
+  io.field("available", shown.available);
+  io.field("reason", shown.reason);
+  if constexpr (Io::kReads) choice = shown;
 }
 
 template <class Io>

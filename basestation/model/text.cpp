@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/model/text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -35,6 +36,23 @@ std::string limits_text(const Robot& robot) {
   limits.push_back(robot.climbs_stairs ? "climbs stairs" : "no stairs");
   if (robot.holonomic) limits.push_back("moves sideways");
   return command::joined(limits, "-");
+}
+
+std::string motion_text(const Robot& robot) {
+  constexpr double kLeastSpeed = 0.05, kLeastTurn = 0.05;  // m/s, rad/s: of odometry at rest.
+  if (!robot.located || !(std::hypot(robot.vx, robot.vy) > kLeastSpeed || std::abs(robot.wz) > kLeastTurn))
+    return {};
+  if (is_by_hand(robot.mode)) return "driven by hand";
+  const auto self = std::find(robot.convoy.begin(), robot.convoy.end(), robot.name);
+  if (self != robot.convoy.end() && self != robot.convoy.begin()) return "follows " + *std::prev(self);
+  return "moves without a goal";
+}
+
+bool was_let_go(const Robot& robot) { return robot.mode == "hold" && robot.reason == Reason::joystick_stale; }
+
+std::string standstill_text(const Robot& robot) {
+  if (robot.reason == Reason::none || robot.moving_allowed) return {};
+  return was_let_go(robot) ? "driving by hand ended" : std::string(describe(robot.reason));
 }
 
 std::string exploration_text(const ExplorationView& e) {

@@ -16,6 +16,13 @@ inline constexpr double kUnknownPlace = 65.0;
 std::string size_text(const Size& size);
 /// What the robot can do at most: "1.0 m/s, 1.5 rad/s, steps of 0.10 m, no stairs".
 std::string limits_text(const Robot& robot);
+/// What a robot does that drives to no goal: "driven by hand", "follows r1", "moves without a goal"; empty:
+/// it is stationary.
+std::string motion_text(const Robot& robot);
+/// Whether the robot holds because a drive by hand ended.
+bool was_let_go(const Robot& robot);
+/// Why the robot does not move, in words; empty: nothing keeps it.
+std::string standstill_text(const Robot& robot);
 /// What it explored: "exploring, 120 m3, about 40%, 3 frontiers left, 0 out of reach".
 std::string exploration_text(const ExplorationView& exploration);
 /// An area with its kind, corners (m) and heights (m).

@@ -102,6 +102,16 @@ TEST(Render, ARobotHasTheNumberOfItsName) {
   EXPECT_THAT(page, HasSubstr("   r10 ")) << "no key selects it";
 }
 
+TEST(Render, ARobotThatMovesIsNotReady) {
+  World world{
+      .robots = {{.name = "r1", .located = true, .vx = 1.0F, .mine = true, .mode = "smart_joystick"}}};
+  EXPECT_THAT(text(render(world, {.selected = "r1"}, 24, 80, false)), HasSubstr("driven by hand"));
+  world.robots[0].vx = 0.0F;
+  world.robots[0].mode = "hold";
+  world.robots[0].reason = Reason::joystick_stale;
+  EXPECT_THAT(text(render(world, {.selected = "r1"}, 24, 80, false)), HasSubstr("driving by hand ended"));
+}
+
 TEST(Render, TheSelectedRobotStaysInView) {
   EXPECT_THAT(text(render(fleet(40), {.selected = "r40"}, 24, 80, false)), HasSubstr("> "));
   EXPECT_THAT(text(render(fleet(40), {.selected = "r40"}, 24, 80, false)), HasSubstr("r40"));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "basestation/model/action.hpp"
 #include "basestation/model/numbering.hpp"
 #include "basestation/report/table.hpp"
 #include "core/command/words.hpp"
@@ -158,7 +159,9 @@ void detail(Page& page, const World& world, const WatchState& state) {
   std::string troubles;
   for (const std::string& trouble : robot->troubles) troubles += trouble + "  ";
   if (!troubles.empty()) cells.push_back({troubles, kRed});
-  if (robot->reason != Reason::none && robot->stops.empty())
+  if (was_let_go(*robot) && robot->stops.empty())
+    cells.push_back({standstill_text(*robot) + "  "});
+  else if (robot->reason != Reason::none && robot->stops.empty())
     cells.push_back({"does not move: " + std::string(name(robot->reason)) + "  ", kYellow});
   std::string areas;
   for (const AreaView& area : robot->areas)
@@ -173,9 +176,12 @@ void detail(Page& page, const World& world, const WatchState& state) {
                                                : "locked  "});
   std::string closed;
   for (const ModeChoice& mode : robot->choices)
-    if (!mode.available && mode.reason != Reason::joystick_stale)
+    if (!can_enter(mode))
       closed += (closed.empty() ? "" : ", ") + mode.mode + " (" + std::string(name(mode.reason)) + ")";
   if (!closed.empty()) cells.push_back({"no " + closed, kDim});
+  const bool no_goal = robot->goal_phase == GoalPhase::none || robot->goal_phase == GoalPhase::kept;
+  if (const std::string motion = motion_text(*robot); !motion.empty() && no_goal)
+    cells.insert(cells.begin() + 1, {motion + "  ", kGreen});
   if (cells.size() == 1) cells.push_back({"ready", kGreen});
   page.line(cells);
 }

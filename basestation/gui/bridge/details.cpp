@@ -33,9 +33,8 @@ std::string holder(const Robot& robot) {
 
 std::string mode(const Robot& robot) {
   if (robot.mode.empty()) return "not heard yet";
-  return robot.mode + (robot.moving_allowed || robot.reason == Reason::none
-                           ? ""
-                           : ": " + std::string(describe(robot.reason)));
+  const std::string why = station::standstill_text(robot);
+  return robot.mode + (why.empty() ? "" : ": " + why);
 }
 
 std::string place(const Robot& robot) {
