@@ -59,6 +59,7 @@ DriveSession::Step DriveSession::step(const Hands& hands, const DriveView& view,
   if (robot->stopped || !robot->stops.empty()) halt("a stop is set: reset it first");
   if (robot->age + view.silent > kOldState) halt("the robot's state is old");
   if (view.since_beat > kFrozen) halt("the window hangs");
+  if (!view.focused) halt("another window has the keyboard");
   const bool at_rest = zero(axes) && !halted;
   rest_first_ = halted || (rest_first_ && !at_rest);
   if (rest_first_ && !halted) halt("let go once, then drive on");

@@ -22,6 +22,7 @@ struct DriveView {
   const Robot* robot{};  ///< Null: it is not known any more.
   double silent{};       ///< Time since the station's last snapshot, s.
   double since_beat{};   ///< Time since the window's own thread gave a sign of life, s.
+  bool focused{true};    ///< The window has the keyboard.
 };
 
 /// Drives one robot by hand. It is bound to that robot: what is selected does not matter. The velocity is

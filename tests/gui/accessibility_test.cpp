@@ -25,8 +25,7 @@ const std::set<QString> kLow{
     "zoomIn",       "zoomOut",         "logWarnings",   "logSelected",   "logExport",
     "logTextInput", "receptionToggle", "hearingToggle"};
 /// Texts that may be cut off: they are whole in another place, which is beside them.
-const std::map<QString, QString> kCut{{"buttonHint", "the answer to a tap"},
-                                      {"budget", "the command net, with all that was not sent"}};
+const std::map<QString, QString> kCut{{"budget", "the command net, with all that was not sent"}};
 
 QString group_of(const QString& name) { return name.section('_', 0, 0); }
 

@@ -132,5 +132,14 @@ TEST_F(AttentionTest, ManyRobotsWithOneCauseAreOneRow) {
   EXPECT_THAT(lines(), ElementsAre("4 robots: lost: r1, r2, r3, r4"));
 }
 
+TEST_F(AttentionTest, AStopOfManyRobotsNamesWhoStoppedThem) {
+  for (int i = 1; i <= 4; ++i) {
+    r(i).stopped = true;
+    r(i).stops = i == 4 ? std::vector<std::string>{"op3", "op2"} : std::vector<std::string>{"op2"};
+    say("r" + std::to_string(i), "stopped", "op2 stopped r" + std::to_string(i));
+  }
+  EXPECT_THAT(lines(), ElementsAre("4 robots: stopped by op2, op3: r1, r2, r3, r4"));
+}
+
 }  // namespace
 }  // namespace adit::gui

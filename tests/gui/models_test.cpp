@@ -82,6 +82,28 @@ TEST(Card, ValuesThatMeanNothingAreADash) {
   EXPECT_EQ(card.age, "-");
 }
 
+TEST(Card, ARobotThatMovesIsNotReady) {
+  station::Robot moving = mine(robot("r1", 0, 0));
+  EXPECT_EQ(card_of(moving, 1, 0.0, 1.0).detail, "ready");
+  moving.vx = 1.0F;
+  moving.mode = "smart_joystick";
+  EXPECT_EQ(card_of(moving, 1, 0.0, 1.0).detail, "driven by hand");
+  moving.mode = "convoy_follow";
+  moving.convoy = {"r4", "r1"};
+  EXPECT_EQ(card_of(moving, 1, 0.0, 1.0).detail, "follows r4");
+  moving.mode = "hold";
+  moving.convoy.clear();
+  EXPECT_EQ(card_of(moving, 1, 0.0, 1.0).detail, "moves without a goal");
+}
+
+TEST(Card, ARobotThatWasLetGoMissesNoStick) {
+  station::Robot let_go = mine(robot("r1", 0, 0));
+  let_go.reason = Reason::joystick_stale;  // Why it fell to hold.
+  EXPECT_EQ(card_of(let_go, 1, 0.0, 1.0).detail, "driving by hand ended");
+  let_go.mode = "smart_joystick";
+  EXPECT_EQ(card_of(let_go, 1, 0.0, 1.0).detail, std::string(describe(Reason::joystick_stale)));
+}
+
 TEST(ActionBar, HasEveryPlaceAlwaysInTheSameOrder) {
   const station::World world = ten_robots();
   for (const std::vector<std::string>& selection :
@@ -106,6 +128,13 @@ TEST(ActionBar, ARobotThatIsNotHeldIsTakenByATapAndAnothersByHolding) {
   EXPECT_EQ(button(bar, "take").touch, Touch::hold);
   EXPECT_EQ(button(bar, "take").hint, "from op2");
   EXPECT_TRUE(button(bar_of(ten_robots(), {"r8"}), "take").robots.empty());  // Locked.
+}
+
+TEST(ActionBar, EveryHolderIsNamedFromWhomRobotsAreTaken) {
+  station::World world = ten_robots();
+  world.robots[7].locked = false;
+  world.robots[7].holder = "op3";
+  EXPECT_EQ(button(bar_of(world, {"r3", "r8"}), "take").hint, "from op2, op3");
 }
 
 TEST(ActionBar, WhatIsNotPossibleSaysWhyAndWhatHelps) {

@@ -23,5 +23,27 @@ TEST_F(Window, AFingerThatRestsOnACardAddsItOrTakesItOut) {
   EXPECT_THAT(control.selection(), ElementsAre("r2"));
 }
 
+TEST_F(Window, AKeySelectsTheRobotThatHasItsNumber) {
+  station::World world = ten_robots();
+  world.robots.insert(world.robots.begin() + 1, robot("r10", 3, 3));
+  world.robots.insert(world.robots.begin(), robot("amber", 4, 4));
+  show(world);
+  for (const auto& [key, name] : {std::pair{Qt::Key_1, "r1"}, {Qt::Key_2, "r2"}, {Qt::Key_9, "r9"}}) {
+    QTest::keyClick(window(), key);
+    EXPECT_THAT(control.selection(), ElementsAre(name));
+  }
+  for (int row = 0; row < control.robots()->rowCount(); ++row) {
+    const auto cell = [&](int role) {
+      return control.robots()->data(control.robots()->index(row, 0), Qt::UserRole + role).toString();
+    };
+    if (cell(0).startsWith("r") && cell(0) != "rx") {
+      EXPECT_EQ("r" + cell(1), cell(0)) << "the number on the card";
+    }
+  }
+  QStringList labels;
+  for (const MapLabel& label : map().marks().labels) labels << QString::fromStdString(label.text);
+  EXPECT_TRUE(labels.contains("10") && labels.contains("11")) << "r10 and amber on the map";
+}
+
 }  // namespace
 }  // namespace adit::gui

@@ -15,23 +15,19 @@ namespace {
 using station::Action;
 using station::Robot;
 
-constexpr std::size_t kMany = 3;  // Commands to more robots are held, not tapped.
-
 const Action* find_action(const std::vector<Action>& actions, std::string_view id) {
   for (const Action& action : actions)
     if (station::id_of(action) == id) return &action;
   return nullptr;
 }
 
-std::string spaced(const std::vector<std::string>& robots) {
-  if constexpr (kBreakAllImplied) return "all";
-  std::string words;
-  for (const std::string& robot : robots) words += (words.empty() ? "" : " ") + robot;
-  return words;
+/// Adds a name that is not among them yet.
+void add_once(std::vector<std::string>& names, const std::string& name) {
+  if (std::ranges::count(names, name) == 0) names.push_back(name);
 }
 
 std::string line_for(const Slot& slot, const std::vector<std::string>& robots) {
-  std::string line = slot.before + (" " + spaced(robots));
+  std::string line = slot.before + (" " + words_of(robots));
   if (*slot.after != 0) line += " " + std::string(slot.after);
   return line;
 }
@@ -76,8 +72,7 @@ class Builder {
                                         [](const Robot* robot) { return robot->mine && robot->locked; });
     if (id == "lock" && all_locked) row.before = "unlock", row.label = "Unlock", id = "unlock";
     BarButton button{.id = slot.id, .label = row.label, .key = slot.key};
-    std::string from;
-    std::vector<std::string> stoppers;
+    std::vector<std::string> holders, stoppers;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       const Robot& robot = *robots_[i];
       const Action* action = find_action(actions_[i], id);
@@ -92,27 +87,41 @@ class Builder {
       if (of_others) {
         row.after = "--override";
         button.touch = Touch::hold;
-        for (const std::string& stopper : robot.stops)
-          if (std::find(stoppers.begin(), stoppers.end(), stopper) == stoppers.end())
-            stoppers.push_back(stopper);
+        for (const std::string& stopper : robot.stops) add_once(stoppers, stopper);
       } else if (!action->valid || !nothing.empty()) {
         refuse(row, robot, action->reason, nothing.empty() ? action->text : nothing);
         continue;
       }
       button.robots.push_back(robot.name);
       if (id == "take" && !robot.holder.empty()) {
-        from = "from " + robot.holder;
+        add_once(holders, robot.holder);
         button.touch = Touch::hold;
       }
     }
-    if (!stoppers.empty()) from = "stop of " + command::joined(stoppers, "");
     if (id == "goto") button.touch = Touch::place;
-    const bool free = id == "stop" || id == "mode_hold" || id == "goto";
-    if (button.robots.size() > kMany && !free) button.touch = Touch::hold;
     if (!button.robots.empty()) button.line = line_for(row, button.robots);
     if (button.robots.size() < robots_.size() && !button.robots.empty())
       button.hint = std::to_string(button.robots.size()) + "/" + std::to_string(robots_.size());
-    if (!from.empty()) button.hint += (button.hint.empty() ? "" : " ") + from;
+    button.short_hint = button.hint;
+    const auto hint = [&](const std::string& text, const char* brief) {
+      button.hint += (button.hint.empty() ? "" : " ") + text;
+      button.short_hint = brief;
+    };
+    if (!holders.empty())
+      hint("from " + command::joined(holders, ""), holders.size() > 1 ? "from others" : "from another");
+    if (!stoppers.empty())
+      hint("stop of " + command::joined(stoppers, ""),
+           stoppers.size() > 1 ? "stops of others" : "stop of another");
+    push(std::move(button));
+  }
+
+  /// The one place that asks for a press that is held because of many robots.
+  void push(BarButton button) {
+    if (needs_hold(button.id, button.robots.size()))
+      button.touch = button.touch == Touch::place ? Touch::place_held : Touch::hold;
+    if (button.short_hint.empty() && !button.robots.empty())
+      button.short_hint =
+          std::to_string(button.robots.size()) + (button.robots.size() == 1 ? " robot" : " robots");
     bar_.buttons.push_back(std::move(button));
   }
 
@@ -133,7 +142,7 @@ class Builder {
     } else if (!robots_.empty()) {
       refuse(slot, *robots_[0], Reason::none, "one robot at a time: select one");
     }
-    bar_.buttons.push_back(std::move(button));
+    push(std::move(button));
   }
 
   /// Whether all of the selection are in one convoy, and whether its leader is among them.
@@ -165,7 +174,7 @@ class Builder {
       const bool leads = std::count(names.begin(), names.end(), leader) > 0;
       button.label = leads ? "End convoy" : "Peel off";
       button.robots = leads ? std::vector{leader} : names;
-      button.line = (leads ? "convoy stop " : "peeloff ") + spaced(button.robots);
+      button.line = (leads ? "convoy stop " : "peeloff ") + words_of(button.robots);
     } else if (names.size() == 1) {
       refuse(slot, *robots_[0], Reason::none,
              "select the leader, and then those that follow, in their order");
@@ -176,9 +185,10 @@ class Builder {
       button.robots = names;
       button.touch = Touch::hold;
       button.hint = names.front() + " first";
+      button.short_hint = std::to_string(names.size()) + " robots";
       button.line = line_for(slot, names);
     }
-    bar_.buttons.push_back(std::move(button));
+    push(std::move(button));
   }
 
   void refuse(const Slot& slot, const Robot& robot, Reason reason, const std::string& why) {
@@ -231,6 +241,18 @@ class Builder {
 };
 
 }  // namespace
+
+std::string words_of(const std::vector<std::string>& robots) {
+  if constexpr (kBreakAllImplied) return "all";
+  std::string words;
+  for (const std::string& robot : robots) words += (words.empty() ? "" : " ") + robot;
+  return words;
+}
+
+bool needs_hold(std::string_view action, std::size_t robots) {
+  constexpr std::size_t kMany = 3;
+  return robots > kMany && action != "stop" && action != "mode_hold";
+}
 
 ActionBar bar_of(const station::World& world, const std::vector<std::string>& selection) {
   return Builder(world, selection).build();

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "basestation/model/world.hpp"
@@ -11,8 +12,9 @@ namespace adit::gui {
 /// What a button needs of the operator.
 enum class Touch : std::uint8_t {
   tap,
-  hold,   ///< Press and hold: it takes something from someone, or concerns many robots.
-  place,  ///< A tap on the map follows.
+  hold,        ///< Press and hold: it takes something from someone, or concerns many robots.
+  place,       ///< A tap on the map follows.
+  place_held,  ///< A press on the map follows that is held.
 };
 
 /// A place of the action bar. Its position never changes.
@@ -42,6 +44,7 @@ inline constexpr std::array kSlots{
 struct BarButton {
   std::string id{}, label{}, key{};
   std::string hint{};                 ///< "2/3", or "from op2".
+  std::string short_hint{};           ///< The same without names: "from another", "4 robots".
   std::string line{};                 ///< The command, with the robots' names.
   std::vector<std::string> robots{};  ///< Those that would accept it; empty: it is not possible now.
   Touch touch{Touch::tap};
@@ -64,6 +67,13 @@ struct ActionBar {
   std::vector<Refusal> not_now{};
   bool operator==(const ActionBar&) const = default;
 };
+
+/// The robots' names as words of a command line.
+std::string words_of(const std::vector<std::string>& robots);
+
+/// Whether an action of so many robots needs a press that is held, or the Enter key: more than three, unless
+/// it stops or holds them. `action`: as station::id_of().
+bool needs_hold(std::string_view action, std::size_t robots);
 
 /// What the robots of a selection would accept now, by their station's catalogue of actions.
 ActionBar bar_of(const station::World& world, const std::vector<std::string>& selection);

@@ -79,9 +79,11 @@ QString AreaTool::text() const {
       .arg(names.join(" "));
 }
 
-void AreaTool::apply(const QString& kind) {
+bool AreaTool::is_held() const { return needs_hold("area", robots().size()); }
+
+void AreaTool::apply(const QString& kind, bool held) {
   const std::vector<std::string> names = robots();
-  if (!ready_ || control_.silent()) return;
+  if (!ready_ || control_.silent() || (is_held() && !held)) return;
   if (names.empty()) {
     control_.say("Area: no robot of yours is selected any more", "refused");
     return;

@@ -25,6 +25,8 @@ class AreaTool : public QObject {
   /// A rectangle is drawn and waits for its meaning.
   Q_PROPERTY(bool ready READ ready NOTIFY changed)
   Q_PROPERTY(QString text READ text NOTIFY changed)
+  /// Its robots are so many that its buttons are held.
+  Q_PROPERTY(bool held READ is_held NOTIFY changed)
 
  public:
   static constexpr double kLeastSide = 0.2;  ///< A smaller rectangle is none, m.
@@ -35,6 +37,7 @@ class AreaTool : public QObject {
   void set_active(bool active);
   bool ready() const { return ready_; }
   QString text() const;
+  bool is_held() const;
 
   /// The selection may have changed.
   void refresh();
@@ -43,8 +46,8 @@ class AreaTool : public QObject {
   void drop();
   /// The corners that are drawn; empty: none.
   std::vector<Point> sketch() const;
-  /// Gives the rectangle to the robots: keep_out, keep_in or prefer.
-  Q_INVOKABLE void apply(const QString& kind);
+  /// Gives the rectangle to the robots: keep_out, keep_in or prefer. `held`: by a press that was held.
+  Q_INVOKABLE void apply(const QString& kind, bool held);
 
  signals:
   void changed();

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "basestation/gui/bridge/card.hpp"
+#include "basestation/model/numbering.hpp"
 #include "core/command/words.hpp"
 
 namespace adit::gui {
@@ -11,9 +12,20 @@ namespace {
 
 using station::Alert;
 
-std::string spaced(std::string code) {
-  std::replace(code.begin(), code.end(), '_', ' ');
+std::string words_of_code(std::string code) {
+  std::ranges::replace(code, '_', ' ');
   return code;
+}
+
+/// What happened, in a few words. Of a stop: who set it.
+std::string what_of(const Alert& alert, const station::World& world) {
+  std::vector<std::string> stoppers;
+  if (alert.code == "stopped")
+    for (const station::Robot& robot : world.robots)
+      if (std::ranges::count(alert.robots, robot.name) > 0)
+        for (const std::string& stopper : robot.stops)
+          if (std::ranges::count(stoppers, stopper) == 0) stoppers.push_back(stopper);
+  return stoppers.empty() ? words_of_code(alert.code) : "stopped by " + command::joined(stoppers, "");
 }
 
 /// The text of the notification names the operator who asked: "op2 asked for r3".
@@ -21,19 +33,33 @@ void offer_grant(Need& need, const Alert& alert, const station::World& world) {
   if (alert.code != "asked" || alert.robots.size() != 1) return;
   for (const station::StationSummary& station : world.stations)
     if (!station.self && !station.lost && alert.text.starts_with(station.name + " asked for ")) {
-      need.grant_label = "Grant to " + station.name;
+      constexpr std::size_t kLongName = 12;  // The text beside it names the operator, too.
+      need.grant_label = station.name.size() > kLongName ? "Grant" : "Grant to " + station.name;
       need.grant_line = "grant " + alert.robots.front() + " " + station.name;
     }
+}
+
+/// The robots without their names: "robot 7", "4 robots".
+std::string short_who(const std::vector<std::string>& robots, const station::World& world) {
+  if (robots.size() != 1) return robots.empty() ? "station" : std::to_string(robots.size()) + " robots";
+  const std::vector<int> numbers = station::numbers_of(world);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (world.robots[i].name == robots.front()) return "robot " + std::to_string(numbers[i]);
+  return "a robot";
 }
 
 Need need_of(const Alert& alert, const station::World& world, double now) {
   const station::AlertRow* row = station::alert_row(alert.code);
   const bool act = alert.priority == station::Priority::act;
+  constexpr std::size_t kShort = 45;  // Characters that have room at the top of the window.
+  const std::string what = what_of(alert, world);
   const bool ends_when_seen = !row || row->ends == station::Ends::seen;
   Need need{.id = "alert " + std::to_string(alert.id),
             .robots = alert.robots,
             .who = alert.robots.empty() ? "station" : command::joined(alert.robots, ""),
-            .text = alert.text.empty() ? spaced(alert.code) : alert.text,
+            .short_who = short_who(alert.robots, world),
+            .text = alert.text.empty() ? words_of_code(alert.code) : alert.text,
+            .short_text = what.size() <= kShort ? what : words_of_code(alert.code),
             .since = age_text(now - alert.first),
             .urgent = act && !alert.seen,
             .can_see = !alert.seen && (act || ends_when_seen),
@@ -41,7 +67,7 @@ Need need_of(const Alert& alert, const station::World& world, double now) {
             .alert = alert.id};
   if (alert.robots.size() >= station::AlertQueue::kManyRobots) {
     need.who = std::to_string(alert.robots.size()) + " robots";
-    need.text = spaced(alert.code) + ": " + command::joined(alert.robots, "");
+    need.text = what + ": " + command::joined(alert.robots, "");
   }
   if (alert.count > 1 && alert.robots.size() == 1)
     need.text += " (" + std::to_string(alert.count) + " times)";
@@ -60,15 +86,16 @@ std::vector<Need> Attention::needs(const station::World& world, const Trails& tr
                                    double silent) const {
   std::vector<Need> needs;
   for (const Alert& alert : queue_.shown(now)) needs.push_back(need_of(alert, world, now));
-  int number = 0;
   for (const station::Robot& robot : world.robots) {
-    const Card card = card_of(robot, ++number, silent, trails.stale_after(robot.name));
+    const Card card = card_of(robot, 0, silent, trails.stale_after(robot.name));
     if (!robot.mine || !card.needs_operator || queue_.concerns(robot.name)) continue;
     if (card.contact != Contact::lost && stopped_here(robot, world)) continue;
     needs.push_back({.id = "state " + robot.name,
                      .robots = {robot.name},
                      .who = robot.name,
-                     .text = card.headline + ": " + card.detail});
+                     .short_who = short_who({robot.name}, world),
+                     .text = card.headline + ": " + card.detail,
+                     .short_text = card.short_headline + ": " + card.short_detail});
   }
   return needs;
 }

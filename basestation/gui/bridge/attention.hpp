@@ -13,7 +13,9 @@ struct Need {
   std::string id{};  ///< Stays the same while it is shown.
   std::vector<std::string> robots{};
   std::string who{};                        ///< The robots, or "station".
+  std::string short_who{};                  ///< The same without names: "robot 7", "4 robots".
   std::string text{};                       ///< What happened, with the count if it happened more than once.
+  std::string short_text{};                 ///< The same in a few words.
   std::string since{};                      ///< Time since it began; empty: not known.
   std::string grant_label{}, grant_line{};  ///< Hands the robot to the operator who asked; empty: none did.
   bool urgent{};          ///< Motion or control is at stake, and the operator has not seen it yet.

@@ -9,7 +9,8 @@ namespace adit::gui {
 namespace {
 
 QList<QByteArray> roles() {
-  return {"need", "urgent", "who", "line", "since", "canSee", "canWait", "grantLabel"};
+  return {"need",      "urgent", "who",    "shortWho", "line",
+          "shortLine", "since",  "canSee", "canWait",  "grantLabel"};
 }
 
 }  // namespace
@@ -27,8 +28,9 @@ void AttentionList::refresh() {
   needs_ = attention_.needs(control_.world(), control_.trails(), control_.now(), control_.silent_for());
   std::vector<QVariantList> rows;
   for (const Need& need : needs_) {
-    rows.push_back({text_of(need.id), need.urgent, text_of(need.who), Control::one_line(need.text),
-                    text_of(need.since), need.can_see, need.can_wait, text_of(need.grant_label)});
+    rows.push_back({text_of(need.id), need.urgent, text_of(need.who), text_of(need.short_who),
+                    Control::one_line(need.text), Control::one_line(need.short_text), text_of(need.since),
+                    need.can_see, need.can_wait, text_of(need.grant_label)});
   }
   top_.show({rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(std::min(rows.size(), kTop))});
   rows_.show(std::move(rows));

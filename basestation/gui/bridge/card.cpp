@@ -23,6 +23,11 @@ std::string upper(std::string text) {
   return text;
 }
 
+std::string spaced(std::string code) {
+  std::ranges::replace(code, '_', ' ');
+  return code;
+}
+
 std::string glyph_of(const std::string& platform) {
   if (platform == "wheeled") return "wheels";
   if (platform == "tracked") return "tracks";
@@ -57,24 +62,39 @@ void headline(Card& card, const Robot& robot) {
   set(robot.mode.empty() ? "NOT HEARD YET" : upper(robot.mode), Token::none, "ring", false);
 }
 
-std::string detail(const Card& card, const Robot& robot, double age) {
-  if (card.contact == Contact::lost) return "last heard " + age_text(age) + " ago";
-  if (!robot.stops.empty()) return "stopped by " + command::joined(robot.stops, "");
-  if (robot.stopped) return "stopped";
-  if (!robot.troubles.empty()) return command::joined(robot.troubles, "");
-  if (robot.reason != Reason::none && !robot.moving_allowed) return std::string(describe(robot.reason));
-  if (!robot.yields_to.empty()) return "makes way for " + robot.yields_to;
-  if (!robot.described) return "capabilities not heard yet";
-  if (robot.localisation == Localisation::weak) return "position is weak";
-  if (robot.localisation == Localisation::lost) return "does not know where it is";
+struct Words {
+  std::string full{};
+  std::string brief{};  ///< Without names and numbers of any length; empty: the full ones are short.
+};
+
+Words detail(const Card& card, const Robot& robot, double age) {
+  if (card.contact == Contact::lost) return {"last heard " + age_text(age) + " ago"};
+  if (!robot.stops.empty())
+    return {"stopped by " + command::joined(robot.stops, ""),
+            robot.stops.size() == 1 ? "stopped by one operator"
+                                    : "stopped by " + std::to_string(robot.stops.size()) + " operators"};
+  if (robot.stopped) return {"stopped"};
+  if (!robot.troubles.empty())
+    return {command::joined(robot.troubles, ""),
+            std::to_string(robot.troubles.size()) + " components in trouble"};
+  if (const std::string why = station::standstill_text(robot); !why.empty())
+    return {why, spaced(std::string(name(robot.reason)))};
+  if (!robot.yields_to.empty()) return {"makes way for " + robot.yields_to, "makes way for a robot"};
+  if (!robot.described) return {"capabilities not heard yet"};
+  if (robot.localisation == Localisation::weak) return {"position is weak"};
+  if (robot.localisation == Localisation::lost) return {"does not know where it is"};
   if (robot.exploration.phase != station::ExplorationPhase::none && robot.mode == "explore")
-    return std::string(to_string(robot.exploration.phase)) + ", " + std::to_string(robot.exploration.open) +
-           " frontiers left";
-  if (robot.goal_phase == GoalPhase::active || robot.goal_phase == GoalPhase::kept)
-    return (robot.goal_phase == GoalPhase::active ? "to " : "goal kept: ") +
-           station::fixed(robot.goal[0], 1) + " " + station::fixed(robot.goal[1], 1);
-  if (robot.goal_phase == GoalPhase::reached) return "arrived";
-  return "ready";
+    return {std::string(to_string(robot.exploration.phase)) + ", " + std::to_string(robot.exploration.open) +
+            " frontiers left"};
+  const std::string motion = station::motion_text(robot);
+  const bool by_hand = station::is_by_hand(robot.mode);
+  if ((robot.goal_phase == GoalPhase::active || robot.goal_phase == GoalPhase::kept) &&
+      !(by_hand && !motion.empty()))
+    return {(robot.goal_phase == GoalPhase::active ? "to " : "goal kept: ") +
+            station::fixed(robot.goal[0], 1) + " " + station::fixed(robot.goal[1], 1)};
+  if (robot.goal_phase == GoalPhase::reached) return {"arrived"};
+  if (!motion.empty()) return {motion, motion.substr(0, motion.find(' '))};
+  return {"ready"};
 }
 
 }  // namespace
@@ -97,7 +117,10 @@ Card card_of(const Robot& robot, int number, double silent, double stale_after) 
   card.holder = robot.mine ? "mine" : robot.holder.empty() ? "no holder" : robot.holder;
   if (robot.locked) card.holder += ", locked";
   headline(card, robot);
-  card.detail = detail(card, robot, age);
+  card.short_headline = card.headline.ends_with(" WAITS") ? "WAITS" : card.headline;
+  Words words = detail(card, robot, age);
+  card.short_detail = words.brief.empty() ? words.full : std::move(words.brief);
+  card.detail = std::move(words.full);
   const bool battery = robot.battery >= 0.0F && robot.battery <= 1.0F;
   card.battery = battery ? station::fixed(100.0 * robot.battery, 0) + " %" : "-";
   card.speed = robot.located ? station::fixed(std::hypot(robot.vx, robot.vy), 1) + " m/s" : "-";

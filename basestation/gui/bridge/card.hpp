@@ -11,16 +11,18 @@ namespace adit::gui {
 
 /// What a robot's card shows, as texts.
 struct Card {
-  int number{};  ///< Counts from 1, by name; the keys 1 to 9 select by it.
+  int number{};  ///< As station::numbers_of(); the keys 1 to 9 select by it.
   std::string name{};
   std::string glyph{};  ///< One of wheels, tracks, legs, rotor, unknown.
   std::string platform{};
   std::string holder{};  ///< "mine", "op2", "no holder"; with "locked".
   Token owner{Token::none};
-  std::string headline{};  ///< The mode, or STOP, BLOCKED, LOST.
+  std::string headline{};        ///< The mode, or STOP, BLOCKED, LOST.
+  std::string short_headline{};  ///< What of it matters most: "WAITS".
   Token headline_token{Token::none};
-  std::string shape{};   ///< Of the headline's mark: disc, triangle, square or ring.
-  std::string detail{};  ///< Why it does not move, or where it drives to.
+  std::string shape{};         ///< Of the headline's mark: disc, triangle, square or ring.
+  std::string detail{};        ///< Why it does not move, or where it drives to.
+  std::string short_detail{};  ///< The same in a few words without names.
   std::string battery{};
   std::string speed{};
   std::string goal{};  ///< Distance to the goal.

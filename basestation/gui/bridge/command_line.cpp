@@ -53,7 +53,12 @@ void CommandLine::show_answer(const QString& text, bool refused) {
   emit answered();
 }
 
-void CommandLine::run() {
+bool CommandLine::is_held() const {
+  return line_is_held(line_.toStdString(), control_.world().robots.size());
+}
+
+void CommandLine::run(bool held) {
+  if (is_held() && !held) return show_answer("press and hold: it commands more than three robots", false);
   const std::string line = line_.trimmed().toStdString();
   const TypedLine typed = read_line(line);
   const int order = ++orders_;

@@ -17,6 +17,8 @@ class CommandLine : public QObject {
   Q_PROPERTY(QString line READ line WRITE set_line NOTIFY line_changed)
   Q_PROPERTY(QStringList proposals READ proposals NOTIFY line_changed)
   Q_PROPERTY(QString answer READ answer NOTIFY answered)
+  /// Whether the line commands so many robots that its button is held.
+  Q_PROPERTY(bool held READ is_held NOTIFY line_changed)
   Q_PROPERTY(bool refused READ refused NOTIFY answered)
 
  public:
@@ -31,9 +33,11 @@ class CommandLine : public QObject {
   void set_line(const QString& line);
   QStringList proposals() const { return proposals_; }
   QString answer() const { return answer_; }
+  bool is_held() const;
   bool refused() const { return refused_; }
 
-  Q_INVOKABLE void run();
+  /// By the Enter key, which confirms, or by a press of the button; `held`: for 0.8 s.
+  Q_INVOKABLE void run(bool held = true);
   /// Completes the last word as far as it is clear.
   Q_INVOKABLE void complete();
   /// Ends the last word with a proposal.

@@ -3,12 +3,14 @@
 
 #include <unistd.h>
 
+#include <QDateTime>
 #include <algorithm>
 #include <cmath>
 
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/gui/scene/mark_list.hpp"
 #include "basestation/model/exit_code.hpp"
+#include "basestation/model/numbering.hpp"
 
 namespace adit::gui {
 namespace {
@@ -37,10 +39,12 @@ Control::Control(CommandSink& sink, QObject* parent)
       sink_(sink),
       world_(std::make_shared<station::World>()),
       map_(std::make_shared<station::TileMap>()),
-      robots_({"name", "number", "glyph", "platform", "holder", "owner", "headline", "token", "shape",
-               "detail", "battery", "speed", "goal", "age", "contact", "selected"},
+      robots_({"name", "number", "glyph", "platform", "holder", "owner", "headline", "shortHeadline", "token",
+               "shape", "detail", "shortDetail", "battery", "speed", "goal", "age", "contact", "selected"},
               this),
-      buttons_({"slot", "label", "key", "hint", "names", "possible", "touch", "state_", "reason"}, this),
+      buttons_(
+          {"slot", "label", "key", "hint", "shortHint", "names", "possible", "touch", "state_", "reason"},
+          this),
       refusals_({"row", "label", "names", "why", "cureLabel", "cureLine", "cureHold"}, this),
       log_({"row", "time", "kind", "who", "line"}, this),
       tabs_(sink, log_, this) {
@@ -53,7 +57,6 @@ Control::Control(CommandSink& sink, QObject* parent)
 }
 
 void Control::show(std::shared_ptr<const station::World> world, double now) {
-  if (first_ < 0.0) first_ = now;
   now_ = now;
   world_ = std::move(world);
   silent_for_ = 0.0;
@@ -96,18 +99,20 @@ void Control::refresh() {
 void Control::show_cards() {
   std::vector<QVariantList> rows;
   mine_ = lost_ = stopped_ = 0;
-  int number = 0;
-  for (const Robot& robot : world_->robots) {
-    const Card card = card_of(robot, ++number, silent_for_, trails_.stale_after(robot.name));
+  const std::vector<int> numbers = station::numbers_of(*world_);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const Robot& robot = world_->robots[i];
+    const Card card = card_of(robot, numbers[i], silent_for_, trails_.stale_after(robot.name));
     mine_ += robot.mine;
     lost_ += robot.lost;
     stopped_ += robot.stopped || !robot.stops.empty();
     const bool selected = std::find(selection_.begin(), selection_.end(), robot.name) != selection_.end();
     rows.push_back({text_of(card.name), card.number, text_of(card.glyph), text_of(card.platform),
                     text_of(card.holder), word_of(card.owner), text_of(card.headline),
-                    word_of(card.headline_token), text_of(card.shape), text_of(card.detail),
-                    text_of(card.battery), text_of(card.speed), text_of(card.goal), text_of(card.age),
-                    word_of(card.contact), selected});
+                    text_of(card.short_headline), word_of(card.headline_token), text_of(card.shape),
+                    text_of(card.detail), text_of(card.short_detail), text_of(card.battery),
+                    text_of(card.speed), text_of(card.goal), text_of(card.age), word_of(card.contact),
+                    selected});
   }
   robots_.show(std::move(rows));
 }
@@ -121,14 +126,14 @@ void Control::show_bar() {
                               .robots = names_of(selection_).toStdString(),
                               .why = "the station is silent"});
     for (BarButton& button : bar_.buttons)
-      if (button.id != "stop") button.robots.clear(), button.hint.clear();
+      if (button.id != "stop") button.robots.clear(), button.hint.clear(), button.short_hint.clear();
   }
   std::vector<QVariantList> rows;
   for (const BarButton& button : bar_.buttons) {
-    constexpr std::array kTouches{"tap", "hold", "place"};
+    constexpr std::array kTouches{"tap", "hold", "place", "place_held"};
     const auto state = states_.find(button.id);
     rows.push_back({text_of(button.id), text_of(button.label), text_of(button.key), text_of(button.hint),
-                    names_of(button.robots), !button.robots.empty(),
+                    text_of(button.short_hint), names_of(button.robots), !button.robots.empty(),
                     QString::fromLatin1(kTouches[static_cast<std::size_t>(button.touch)]),
                     state == states_.end() ? QString() : state->second, reason_of(button)});
   }
@@ -164,7 +169,16 @@ QString Control::stop_text() const {
   const int all = robot_count();
   if (all == 0) return "no robot heard";
   const QString count = QString("%1/%2 stopped").arg(stopped_).arg(all);
-  return stop_missing_.isEmpty() || stopped_ == all ? count : count + ", no answer: " + stop_missing_;
+  return stop_missing_.isEmpty() || stopped_ == all ? count
+                                                    : count + ", no answer: " + stop_missing_.join(" ");
+}
+
+QString Control::stop_text_short() const {
+  return stop_missing_.isEmpty() ? stop_text()
+                                 : QString("%1/%2 stopped, no answer: %3 robots")
+                                       .arg(stopped_)
+                                       .arg(robot_count())
+                                       .arg(stop_missing_.size());
 }
 
 QString Control::silent_text() const {
@@ -173,6 +187,10 @@ QString Control::silent_text() const {
     return "STATION SILENT for " + text_of(age_text(silent_for_)) +
            ". All values are old; only stop is tried.";
   return text_of(why_);
+}
+
+QString Control::silent_text_short() const {
+  return ended_ ? "NO STATION. All values are old." : silent_text().section(": ", 0, 0);
 }
 
 QString Control::selection_text() const { return names_of(selection_); }
@@ -203,19 +221,17 @@ void Control::set_reasons_open(bool open) {
   emit reasons_open_changed();
 }
 
-void Control::say(const QString& text, const QString& kind) {
+void Control::say(const QString& text, const QString& kind, const QString& brief) {
   outcome_ = text;
+  outcome_short_ = brief.isEmpty() ? text : brief;
   outcome_kind_ = kind;
   emit said();
 }
 
 void Control::log_row(const QString& kind, const QString& who, const QString& text, double age) {
   constexpr double kLongest = 1e6;  // s
-  const double since = first_ < 0.0 ? 0.0 : now_ - first_ - std::max(age, 0.0);
-  const int seconds = static_cast<int>(std::clamp(std::abs(since), 0.0, kLongest));
-  const QString time = QString(since <= -1.0 ? "-%1:%2" : "%1:%2")  // Before the window was opened.
-                           .arg(seconds / 60, 2, 10, QChar('0'))
-                           .arg(seconds % 60, 2, 10, QChar('0'));
+  const auto ago = static_cast<qint64>(1e3 * (age > 0.0 ? std::min(age, kLongest) : 0.0));
+  const QString time = QDateTime::currentDateTime().addMSecs(-ago).toString("HH:mm:ss");
   log_.prepend({next_row_++, time, kind, who, text}, kMaxLog);
 }
 

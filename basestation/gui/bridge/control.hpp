@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,12 +53,16 @@ class Control : public QObject {
   Q_PROPERTY(adit::gui::DriveControl* drive READ drive CONSTANT)
   Q_PROPERTY(adit::gui::CommandLine* commandLine READ command_line CONSTANT)
   Q_PROPERTY(QString stopText READ stop_text NOTIFY shown)
+  Q_PROPERTY(QString stopTextShort READ stop_text_short NOTIFY shown)
   Q_PROPERTY(bool silent READ silent NOTIFY shown)
   Q_PROPERTY(bool ended READ ended NOTIFY shown)
   Q_PROPERTY(QString silentText READ silent_text NOTIFY shown)
+  Q_PROPERTY(QString silentTextShort READ silent_text_short NOTIFY shown)
   Q_PROPERTY(QString selectionText READ selection_text NOTIFY shown)
   Q_PROPERTY(int refusalCount READ refusal_count NOTIFY shown)
   Q_PROPERTY(QString outcome READ outcome NOTIFY said)
+  /// The same in a few words, where it has no room.
+  Q_PROPERTY(QString outcomeShort READ outcome_short NOTIFY said)
   Q_PROPERTY(QString outcomeKind READ outcome_kind NOTIFY said)
   /// Whether the map is shown from the side.
   Q_PROPERTY(bool solid READ solid WRITE set_solid NOTIFY solid_changed)
@@ -88,8 +93,10 @@ class Control : public QObject {
   /// Goals of the robots that would drive if that place was tapped, map frame, m.
   std::vector<Point> goals_at(const Point& place) const;
   /// Sends the robots of the selection that would accept it to a place, map frame, m.
-  /// `z`: height of the ground there, if it is known.
-  void go_to(const Point& place, std::optional<double> z = std::nullopt);
+  /// `z`: height of the ground there, if it is known. `held`: by a press that was held; see goto_is_held().
+  void go_to(const Point& place, std::optional<double> z, bool held);
+  /// Whether they are so many that a tap on the place is not enough.
+  bool goto_is_held() const;
 
   /// A finger tapped a mark of the map; `add`: with the shift key.
   void tap(const Target& target, bool add);
@@ -109,8 +116,9 @@ class Control : public QObject {
   /// Lines of an answer, as one.
   static QString one_line(const std::string& text);
 
-  /// Shows a line as the last outcome; `kind`: sent, done or refused.
-  void say(const QString& text, const QString& kind);
+  /// Shows a line as the last outcome; `kind`: sent, done or refused. `brief`: what is shown where the text
+  /// has no room.
+  void say(const QString& text, const QString& kind, const QString& brief = {});
 
   /// The operator looks at this place of the map, or at none in particular.
   void view_moved(const std::optional<station::LookedAt>& place) { sink_.look_at(place); }
@@ -124,9 +132,11 @@ class Control : public QObject {
   /// A key of the keyboard; `scan` is its place, as Shift turns 1 into another character. True if it means
   /// something.
   Q_INVOKABLE bool pressKey(int key, int modifiers, int scan, bool repeated);
-  Q_INVOKABLE bool releaseKey(int key, bool repeated);
-  /// The window has no keyboard any more, so no release will come.
-  Q_INVOKABLE void forgetKeys() { keys_down_.clear(), motion_key_ = 0, drive_.forget_keys(); }
+  Q_INVOKABLE bool releaseKey(int key, int scan, bool repeated);
+  /// The keys go to another item or window, so no release will come.
+  Q_INVOKABLE void forgetKeys();
+  /// Whether the window has the keyboard.
+  Q_INVOKABLE void setFocused(bool focused);
 
   QAbstractItemModel* robots() { return &robots_; }
   QAbstractItemModel* buttons() { return &buttons_; }
@@ -146,12 +156,15 @@ class Control : public QObject {
   DriveControl* drive() { return &drive_; }
   CommandLine* command_line() { return &command_line_; }
   QString stop_text() const;
+  QString stop_text_short() const;  ///< Counts instead of names.
   bool silent() const { return silent_for_ > 1.0 || ended_; }
   bool ended() const { return ended_; }
   QString silent_text() const;
+  QString silent_text_short() const;
   QString selection_text() const;
   int refusal_count() const;  ///< Actions that some robot of the selection would refuse.
   QString outcome() const { return outcome_; }
+  QString outcome_short() const { return outcome_short_; }
   QString outcome_kind() const { return outcome_kind_; }
   bool solid() const { return solid_; }
   void set_solid(bool solid);
@@ -185,10 +198,18 @@ class Control : public QObject {
   /// Takes back everything that was begun and not sent.
   void drop_orders();
   void set_state(const std::string& slot, const QString& state);
-  void pend(const std::string& line, const std::string& slot);
+  /// Waits for the Enter key with the line of that button.
+  void pend(const BarButton& button);
   void press_slot(const char* id);
+  void ask_for_place(const BarButton& button);
   QString reason_of(const BarButton& button) const;
-  bool press_letter(int key);
+  struct KeyRow;
+  static std::span<const KeyRow> keys();
+  void confirm();        ///< Sends the line that needs the Enter key.
+  void take_back();      ///< What the Escape key does.
+  void pend_override();  ///< Resets every stop of the selection once that is confirmed.
+  bool press_digit(int key, int scan, bool add);
+  bool press_letter(int key, int place, bool alone);
   /// `age`: time since it happened, s.
   void log_row(const QString& kind, const QString& who, const QString& text, double age = 0.0);
   void show_notice(const station::Notice& notice);
@@ -197,7 +218,7 @@ class Control : public QObject {
   std::shared_ptr<const station::World> world_;
   std::shared_ptr<const station::TileMap> map_;
   Trails trails_{};
-  double now_{}, first_{-1.0};
+  double now_{};
   double silent_for_{0.0};
   bool ended_{false};
   std::string why_{};
@@ -220,14 +241,15 @@ class Control : public QObject {
   int batch_{0};
   QStringList batch_lines_{};
   bool batch_refused_{false};
-  QString outcome_{}, outcome_kind_{};
-  QString stop_missing_{};  ///< Robots that did not answer the last stop of all.
+  QString outcome_{}, outcome_short_{}, outcome_kind_{};
+  QStringList stop_missing_{};  ///< Robots that did not answer the last stop of all.
   bool aiming_{false}, reasons_open_{false}, solid_{false};
 
   std::string pending_line_{}, pending_slot_{};  ///< Sent by the Enter key within 3 s.
   QElapsedTimer pending_since_{};
-  QSet<int> keys_down_{};
-  int motion_key_{0};  ///< Acts when it is released.
+  QSet<int> keys_down_{};  ///< By their places on the keyboard.
+  int motion_place_{0};    ///< Of the key that acts when it is released; 0: none does.
+  const char* motion_slot_{""};
 };
 
 }  // namespace adit::gui

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the operator does: selecting, ordering, keys.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "basestation/gui/break.hpp"
@@ -9,6 +10,7 @@
 #include "basestation/gui/scene/mark_list.hpp"
 #include "basestation/gui/scene/theme.hpp"
 #include "basestation/model/exit_code.hpp"
+#include "basestation/model/numbering.hpp"
 #include "basestation/model/text.hpp"
 
 namespace adit::gui {
@@ -17,6 +19,15 @@ namespace {
 constexpr int kDoneShownMs = 1000, kRefusedShownMs = 8000;
 constexpr int kConfirmMs = 3000;
 constexpr double kGap = 0.5;  // Between robots that are sent to one place, m.
+
+bool is_modifier(int key) {
+  return (key >= Qt::Key_Shift && key <= Qt::Key_ScrollLock) || key == Qt::Key_AltGr ||
+         key == Qt::Key_Super_L || key == Qt::Key_Super_R;
+}
+
+/// The place of a key on the keyboard: its character at the release may be another one than at the press. The
+/// scan code, or the character where the platform has no scan codes.
+int place_of(int key, int scan) { return scan != 0 ? scan : -key; }
 
 std::size_t slot_index(const char* id) {
   for (std::size_t i = 0; i < kSlots.size(); ++i)
@@ -77,7 +88,8 @@ void Control::take_selected(bool held) {
   const bool needs_hold = button.touch == Touch::hold && !button.robots.empty();
   if (held == needs_hold) return trigger(static_cast<int>(slot), held);
   if (needs_hold)
-    say(QString::fromStdString(button.label + " " + button.hint) + ": keep the button held", "sent");
+    say(QString::fromStdString(button.label + " " + button.hint) + ": keep the button held", "sent",
+        QString::fromStdString(button.label + " " + button.short_hint) + ": keep the button held");
 }
 
 void Control::begin_batch() {
@@ -88,13 +100,14 @@ void Control::begin_batch() {
 
 void Control::drop_orders() {
   pending_line_.clear();
-  motion_key_ = 0;
+  motion_place_ = 0;
   emit orders_dropped();
 }
 
 void Control::run(const std::string& line, const std::string& slot, CommandSink::Done then) {
   const int batch = batch_;
-  say(QString::fromStdString(line) + "  …", "sent");
+  say(QString::fromStdString(line) + "  …", "sent",
+      QString::fromStdString(line.substr(0, line.find(' '))) + "  …");
   set_state(slot, "sent");
   sink_.execute(line,
                 [this, line, slot, batch, then = std::move(then)](const station::CommandOutcome& outcome) {
@@ -115,14 +128,13 @@ void Control::stop(const std::vector<std::string>& robots) {
   std::string line = "stop";
   if (robots.empty()) line += " all";
   for (const std::string& robot : robots) line += " " + robot;
-  say(QString::fromStdString(line) + "  …", "sent");
+  say(QString::fromStdString(line) + "  …", "sent", "stop  …");
   set_state(robots.empty() ? "" : "stop", "sent");
   sink_.stop(robots, [this, line, robots, batch](const station::CommandOutcome& outcome) {
     if (robots.empty()) {
-      QStringList missing;
+      stop_missing_.clear();
       for (const station::RobotAnswer& answer : outcome.answers)
-        if (!answer.accepted) missing << QString::fromStdString(answer.robot);
-      stop_missing_ = missing.join(" ");
+        if (!answer.accepted) stop_missing_ << QString::fromStdString(answer.robot);
     }
     finished(line, robots.empty() ? "" : "stop", batch, outcome);
   });
@@ -143,7 +155,10 @@ void Control::finished(const std::string& line, const std::string& slot, int bat
   const QString answer = one_line(outcome.text + outcome.error);
   batch_lines_ << (answer.isEmpty() ? QString::fromStdString(line) : answer);
   batch_refused_ = batch_refused_ || !done;
-  say((batch_refused_ ? "" : "✓ ") + batch_lines_.join(" · "), batch_refused_ ? "refused" : "done");
+  say((batch_refused_ ? "" : "✓ ") + batch_lines_.join(" · "), batch_refused_ ? "refused" : "done",
+      QString::fromStdString(line.substr(0, line.find(' '))) +
+          (batch_refused_ ? ": refused or without an answer, the log says by whom"
+                          : ": done, the log has the answers"));
   emit shown();
 }
 
@@ -162,13 +177,14 @@ void Control::trigger(int slot, bool held) {
   pending_line_.clear();
   if (button.robots.empty())
     return say(QString::fromStdString(button.label) + ": " + reason_of(button), "refused");
-  if (button.touch == Touch::place) {
+  if (button.touch == Touch::place || button.touch == Touch::place_held) {
     set_aiming(!aiming_);
-    if (aiming_) say("Tap the place on the map for " + selection_text() + "; Esc takes it back.", "sent");
+    if (aiming_) ask_for_place(button);
     return;
   }
   if (button.touch == Touch::hold && !held)
-    return say(QString::fromStdString(button.label + " " + button.hint) + ": press and hold", "sent");
+    return say(QString::fromStdString(button.label + " " + button.hint) + ": press and hold", "sent",
+               QString::fromStdString(button.label + " " + button.short_hint) + ": press and hold");
   if (button.id == "stop") return stop(button.robots);
   if (button.id == "drive") return drive_.begin(button.robots.front());
   order(button.line, button.id);
@@ -185,7 +201,7 @@ void Control::stopAll() {
   drop_orders();
   stop_missing_.clear();
   set_aiming(false);
-  if constexpr (kBreakStopConfirm) return pend("stop all", "stop");
+  if constexpr (kBreakStopConfirm) return pend({.id = "stop", .label = "Stop all", .line = "stop all"});
   stop({});
 }
 
@@ -200,8 +216,18 @@ std::vector<Point> Control::goals_at(const Point& place) const {
   return spread(place, button.robots.size(), spacing + kGap);
 }
 
-void Control::go_to(const Point& place, std::optional<double> z) {
+bool Control::goto_is_held() const { return bar_.buttons[slot_index("goto")].touch == Touch::place_held; }
+
+void Control::ask_for_place(const BarButton& button) {
+  const QString how =
+      goto_is_held() ? "Press and hold the place on the map for " : "Tap the place on the map for ";
+  say(how + QString::fromStdString(words_of(button.robots)) + "; Esc takes it back.", "sent",
+      how + QString::number(button.robots.size()) + " robots; Esc takes it back.");
+}
+
+void Control::go_to(const Point& place, std::optional<double> z, bool held) {
   const BarButton button = bar_.buttons[slot_index("goto")];
+  if (goto_is_held() && !held) return ask_for_place(button);
   set_aiming(false);
   pending_line_.clear();
   if (button.robots.empty()) return say("Go to: " + reason_of(button), "refused");
@@ -213,17 +239,19 @@ void Control::go_to(const Point& place, std::optional<double> z) {
         "goto");
 }
 
-void Control::pend(const std::string& line, const std::string& slot) {
-  pending_line_ = line;
-  pending_slot_ = slot;
+void Control::pend(const BarButton& button) {
+  pending_line_ = button.line;
+  pending_slot_ = button.id;
   pending_since_.start();
-  say("Press Enter within 3 s: " + QString::fromStdString(line), "sent");
+  const QString asks = "Press Enter within 3 s: ";
+  say(asks + QString::fromStdString(button.line), "sent",
+      asks + QString::fromStdString(button.label + " " + button.short_hint));
 }
 
 void Control::press_slot(const char* id) {
   const std::size_t index = slot_index(id);
   const BarButton& button = bar_.buttons[index];
-  if (button.touch == Touch::hold && !button.robots.empty()) return pend(button.line, button.id);
+  if (button.touch == Touch::hold && !button.robots.empty()) return pend(button);
   trigger(static_cast<int>(index), false);
 }
 
@@ -237,123 +265,135 @@ void Control::move_selection(int by) {
   select(QString::fromStdString(world_->robots[static_cast<std::size_t>(at)].name), false);
 }
 
+/// What a key does that is pressed. The first row that fits counts.
+struct Control::KeyRow {
+  int key{};
+  int with{};      ///< Of Shift and Ctrl, those that must be down.
+  bool repeats{};  ///< It acts again while it is held.
+  void (*act)(Control& control){};
+};
+
+std::span<const Control::KeyRow> Control::keys() {
+  static constexpr std::array kKeys{
+      KeyRow{Qt::Key_Up, 0, true, [](Control& c) { c.move_selection(-1); }},
+      KeyRow{Qt::Key_Down, 0, true, [](Control& c) { c.move_selection(1); }},
+      KeyRow{Qt::Key_Tab, 0, false, [](Control& c) { c.attention_.show_next(); }},
+      KeyRow{Qt::Key_L, Qt::ControlModifier, false,
+             [](Control&) { Theme::instance().set_light(!Theme::instance().light()); }},
+      KeyRow{Qt::Key_K, Qt::ControlModifier, false, [](Control& c) { c.command_line_.set_open(true); }},
+      KeyRow{Qt::Key_Colon, 0, false, [](Control& c) { c.command_line_.set_open(true); }},
+      KeyRow{Qt::Key_V, 0, false, [](Control& c) { c.set_solid(!c.solid_); }},
+      KeyRow{Qt::Key_PageUp, 0, false, [](Control& c) { emit c.cut_moved(1); }},
+      KeyRow{Qt::Key_PageDown, 0, false, [](Control& c) { emit c.cut_moved(-1); }},
+      KeyRow{Qt::Key_I, 0, false, [](Control& c) { c.details_.set_open(!c.details_.is_open()); }},
+      KeyRow{Qt::Key_Return, 0, false, [](Control& c) { c.confirm(); }},
+      KeyRow{Qt::Key_Enter, 0, false, [](Control& c) { c.confirm(); }},
+      KeyRow{Qt::Key_Escape, 0, false, [](Control& c) { c.take_back(); }},
+      KeyRow{Qt::Key_E, Qt::ShiftModifier, false, [](Control& c) { c.pend_override(); }},
+  };
+  return kKeys;
+}
+
 bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
-  const bool shift = (modifiers & Qt::ShiftModifier) != 0, control = (modifiers & Qt::ControlModifier) != 0;
-  if (key == Qt::Key_Pause || (key == Qt::Key_S && shift)) {
+  const bool shift = (modifiers & Qt::ShiftModifier) != 0;
+  if (key == Qt::Key_Pause || (key == Qt::Key_S && shift)) {  // In every state, with any other key.
     if (!repeated) stopAll();
     return true;
   }
-  motion_key_ = 0;
-  if (drive_.driving() && (modifiers & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier)) == 0) {
-    if (repeated) return true;
-    if (drive_.press(key)) return true;
-  }
-  if (key == Qt::Key_Up || key == Qt::Key_Down) {
-    move_selection(key == Qt::Key_Up ? -1 : 1);
+  motion_place_ = 0;  // A press that repeats is no tap, and one of another key takes it back.
+  if (is_modifier(key)) return false;
+  const int place = place_of(key, scan);
+  const bool alone = keys_down_.isEmpty();
+  if (!repeated) keys_down_.insert(place);
+  const int command = modifiers & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier);
+  if (drive_.driving() && command == 0 && (repeated || drive_.press(key, place))) return true;
+  for (const KeyRow& row : keys()) {
+    const int wanted = row.with & Qt::ControlModifier;
+    if (row.key != key || command != wanted || (row.with & ~modifiers) != 0) continue;
+    if (repeated && !row.repeats) return false;
+    row.act(*this);
     return true;
   }
-  if (repeated || key == Qt::Key_Shift || key == Qt::Key_Control) return false;
-  if (key == Qt::Key_Tab) {
-    attention_.show_next();
-    return true;
-  }
-  if ((modifiers & (Qt::AltModifier | Qt::MetaModifier)) != 0) return false;
-  motion_key_ = 0;
-  keys_down_.insert(key);
-  if (control && key == Qt::Key_L) {
-    Theme::instance().set_light(!Theme::instance().light());
-    return true;
-  }
-  if (key == Qt::Key_Colon || (control && key == Qt::Key_K)) {
-    command_line_.set_open(true);
-    return true;
-  }
-  if (control) return false;
-  if (tabs_.press_key(key)) return true;
-  constexpr int kScanOf1 = 10;  // X11 and Wayland number the keys 1 to 9 from here.
-  const int digit = key >= Qt::Key_1 && key <= Qt::Key_9               ? key - Qt::Key_1
-                    : shift && scan >= kScanOf1 && scan < kScanOf1 + 9 ? scan - kScanOf1
-                                                                       : -1;
-  if (digit >= 0) {
-    if (digit < robot_count())
-      select(QString::fromStdString(world_->robots[static_cast<std::size_t>(digit)].name), shift);
-    return true;
-  }
-  if (key == Qt::Key_V) {
-    set_solid(!solid_);
-    return true;
-  }
-  if (key == Qt::Key_PageUp || key == Qt::Key_PageDown) {
-    emit cut_moved(key == Qt::Key_PageUp ? 1 : -1);
-    return true;
-  }
-  if (key == Qt::Key_I) {
-    details_.set_open(!details_.is_open());
-    return true;
-  }
-  if (key == Qt::Key_Return || key == Qt::Key_Enter) {
-    const bool in_time = !pending_line_.empty() && pending_since_.elapsed() <= kConfirmMs;
-    const std::string line = std::exchange(pending_line_, {});
-    if (!in_time) return !line.empty();
-    if (silent()) {
-      say("Not sent, as the station is silent: " + QString::fromStdString(line), "refused");
-      return true;
-    }
-    begin_batch();
-    run(line, pending_slot_);
-    return true;
-  }
-  if (key == Qt::Key_Escape) {
-    emit orders_dropped();
-    if (area_.active()) {
-      area_.set_active(false);
-    } else if (aiming_ || reasons_open_ || attention_.is_open() || !pending_line_.empty()) {
-      if (aiming_ || !pending_line_.empty()) say("Taken back.", "sent");
-      set_aiming(false);
-      set_reasons_open(false);
-      attention_.set_open(false);
-      pending_line_.clear();
-    } else if (!tabs_.close()) {
-      selection_.clear();
-      refresh();
-    }
-    return true;
-  }
-  if (key == Qt::Key_E && shift) {
-    std::string line = "reset";
-    for (const std::string& name : selection_)
-      if (const station::Robot* robot = world_->robot(name); robot && robot->mine && !robot->stops.empty())
-        line += " " + name;
-    if (line == "reset")
-      say("Reset: no stop is set at a robot of yours in the selection", "refused");
-    else
-      pend(line + " --override", "reset");
-    return true;
-  }
-  return press_letter(key);
+  if (repeated || command != 0) return false;
+  return tabs_.press_key(key) || press_digit(key, scan, shift) || press_letter(key, place, alone);
 }
 
-bool Control::press_letter(int key) {
+void Control::confirm() {
+  const bool in_time = !pending_line_.empty() && pending_since_.elapsed() <= kConfirmMs;
+  const std::string line = std::exchange(pending_line_, {});
+  if (!in_time) return;
+  if (silent()) return say("Not sent, as the station is silent: " + QString::fromStdString(line), "refused");
+  order(line, pending_slot_);
+}
+
+void Control::take_back() {
+  emit orders_dropped();
+  if (area_.active()) {
+    area_.set_active(false);
+  } else if (aiming_ || reasons_open_ || attention_.is_open() || !pending_line_.empty()) {
+    if (aiming_ || !pending_line_.empty()) say("Taken back.", "sent");
+    set_aiming(false);
+    set_reasons_open(false);
+    attention_.set_open(false);
+    pending_line_.clear();
+  } else if (!tabs_.close()) {
+    selection_.clear();
+    refresh();
+  }
+}
+
+void Control::pend_override() {
+  std::vector<std::string> robots;
+  for (const std::string& name : selection_)
+    if (const station::Robot* robot = world_->robot(name); robot && robot->mine && !robot->stops.empty())
+      robots.push_back(name);
+  if (robots.empty()) return say("Reset: no stop is set at a robot of yours in the selection", "refused");
+  pend({.id = "reset", .line = "reset " + words_of(robots) + " --override", .robots = robots});
+}
+
+bool Control::press_digit(int key, int scan, bool add) {
+  constexpr int kScanOf1 = 10;  // X11 and Wayland number the keys 1 to 9 from here.
+  const int digit = key >= Qt::Key_1 && key <= Qt::Key_9             ? key - Qt::Key_0
+                    : add && scan >= kScanOf1 && scan < kScanOf1 + 9 ? scan - kScanOf1 + 1
+                                                                     : 0;
+  if (digit == 0) return false;
+  if (const station::Robot* robot = station::robot_with_number(*world_, digit))
+    select(QString::fromStdString(robot->name), add);
+  return true;
+}
+
+bool Control::press_letter(int key, int place, bool alone) {
   for (const Slot& slot : kSlots) {
     if (*slot.key == 0 || key != Qt::Key_A + (*slot.key - 'a')) continue;
     if (!slot.motion)
       press_slot(slot.id);
-    else if (keys_down_.size() == 1)
-      motion_key_ = key;  // It may start motion: it acts when it is released, and alone.
+    else if (alone)  // It may start motion: it acts when it is released.
+      motion_place_ = place, motion_slot_ = slot.id;
     return true;
   }
   return false;
 }
 
-bool Control::releaseKey(int key, bool repeated) {
+bool Control::releaseKey(int key, int scan, bool repeated) {
   if (repeated) return false;
-  drive_.release_key(key);
-  keys_down_.remove(key);
-  if (key != motion_key_) return false;
-  motion_key_ = 0;
-  for (const Slot& slot : kSlots)
-    if (*slot.key != 0 && slot.motion && key == Qt::Key_A + (*slot.key - 'a')) press_slot(slot.id);
+  const int place = place_of(key, scan);
+  drive_.release_key(place);
+  keys_down_.remove(place);
+  if (place == 0 || place != motion_place_) return false;
+  motion_place_ = 0;
+  press_slot(motion_slot_);
   return true;
+}
+
+void Control::forgetKeys() {
+  keys_down_.clear();
+  motion_place_ = 0;
+  drive_.forget_keys();
+}
+
+void Control::setFocused(bool focused) {
+  forgetKeys();
+  drive_.set_focused(focused);
 }
 
 }  // namespace adit::gui

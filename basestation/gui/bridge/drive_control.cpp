@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/gui/bridge/drive_control.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "basestation/gui/break.hpp"
@@ -25,6 +26,7 @@ DriveControl::DriveControl(Control& control) : QObject(&control), control_(contr
 
 void DriveControl::use(DriveSink& sink, std::function<InputThread::Pad()> make_pad) {
   thread_ = std::make_unique<InputThread>(sink, std::move(make_pad));
+  thread_->focus(focused_);
   timer_.start(kBeatMs);
 }
 
@@ -62,7 +64,7 @@ void DriveControl::setMode(const QString& mode) {
   if (driving()) control_.order("mode " + status_.robot + " " + mode.toStdString());
 }
 
-bool DriveControl::press(int key) {
+bool DriveControl::press(int key, int place) {
   if (!driving()) return false;
   switch (key) {
     case Qt::Key_Escape:
@@ -86,7 +88,7 @@ bool DriveControl::press(int key) {
     case Qt::Key_D:
     case Qt::Key_Q:
     case Qt::Key_E:
-      down_.insert(key);
+      down_[place] = key;
       send_keys();
       return true;
     default:
@@ -94,8 +96,8 @@ bool DriveControl::press(int key) {
   }
 }
 
-void DriveControl::release_key(int key) {
-  if (down_.remove(key)) send_keys();
+void DriveControl::release_key(int place) {
+  if (down_.erase(place) > 0) send_keys();
 }
 
 void DriveControl::forget_keys() {
@@ -103,10 +105,17 @@ void DriveControl::forget_keys() {
   send_keys();
 }
 
+void DriveControl::set_focused(bool focused) {
+  focused_ = focused;
+  if (thread_) thread_->focus(focused);
+}
+
 void DriveControl::send_keys() {
+  const auto down = [&](int key) {
+    return std::ranges::any_of(down_, [key](const auto& at) { return at.second == key; });
+  };
   const auto axis = [&](int more, int also_more, int less, int also_less) {
-    return static_cast<double>((down_.contains(more) || down_.contains(also_more)) -
-                               (down_.contains(less) || down_.contains(also_less)));
+    return static_cast<double>((down(more) || down(also_more)) - (down(less) || down(also_less)));
   };
   if (thread_)
     thread_->keys({axis(Qt::Key_Up, Qt::Key_W, Qt::Key_Down, Qt::Key_S),

@@ -2,8 +2,8 @@
 #pragma once
 #include <QtQml/qqmlregistration.h>
 #include <QObject>
-#include <QSet>
 #include <QTimer>
+#include <map>
 #include <memory>
 
 #include "basestation/gui/bridge/input_thread.hpp"
@@ -46,10 +46,12 @@ class DriveControl : public QObject {
   Q_INVOKABLE void release();
   /// Another mode by hand: smart_joystick or manual.
   Q_INVOKABLE void setMode(const QString& mode);
-  /// A key while a robot is driven. True if it means something then.
-  bool press(int key);
-  void release_key(int key);
+  /// A key while a robot is driven, and its place on the keyboard. True if it means something then.
+  bool press(int key, int place);
+  void release_key(int place);
   void forget_keys();
+  /// Whether the window has the keyboard. Without it no hand drives.
+  void set_focused(bool focused);
   /// Vibrates the game controller: strongly if motion or control is at stake.
   void warn_hand(bool strongly);
 
@@ -74,7 +76,8 @@ class DriveControl : public QObject {
   Control& control_;
   std::unique_ptr<InputThread> thread_{};
   InputThread::Status status_{};
-  QSet<int> down_{};
+  std::map<int, int> down_{};  ///< Keys that drive, by their places.
+  bool focused_{true};
   QTimer timer_{};
 };
 

@@ -89,6 +89,12 @@ void InputThread::keys(const std::array<double, 3>& axes) {
   wake_.notify_all();
 }
 
+void InputThread::focus(bool focused) {
+  const std::lock_guard guard(mutex_);
+  focused_ = focused;
+  wake_.notify_all();
+}
+
 void InputThread::rumble(double strength, std::chrono::milliseconds duration) {
   const std::lock_guard guard(mutex_);
   rumble_ = {strength, duration};
@@ -147,8 +153,8 @@ void InputThread::step(const Gamepad::State& pad, double now) {
   hands_.pad = pad;
   if (!session_) return;
   const auto world = sink_.world();
-  const DriveSession::Step next =
-      session_->step(hands_, {world->robot(session_->robot()), sink_.silent_for(), now - beat_}, now);
+  const DriveSession::Step next = session_->step(
+      hands_, {world->robot(session_->robot()), sink_.silent_for(), now - beat_, focused_}, now);
   if (next.ends) return end_drive(next.why);
   status_.asked = next.velocity;
   status_.why = next.why;

@@ -59,6 +59,8 @@ class InputThread {
   /// A finger on the stick of the screen; axes as in Hands.
   void touch(bool touching, const std::array<double, 3>& axes);
   void keys(const std::array<double, 3>& axes);
+  /// Whether the window has the keyboard. Without it no hand drives.
+  void focus(bool focused);
   /// Vibrates the controller for a while; strength: [0, 1].
   void rumble(double strength, std::chrono::milliseconds duration);
   Status status() const;
@@ -78,6 +80,7 @@ class InputThread {
   std::int64_t request_{};
   int drives_{};  ///< Begun so far: an outcome of an earlier one ends nothing.
   double beat_{};
+  bool focused_{true};
   double start_since_{}, take_since_{};  ///< When the button went down, s; 0: it is up, or was counted.
   std::optional<std::pair<double, std::chrono::milliseconds>> rumble_{};
   Status status_{};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "basestation/gui/bridge/action_bar.hpp"
 #include "core/command/parse.hpp"
 #include "core/command/vocabulary.hpp"
 #include "core/command/words.hpp"
@@ -73,6 +74,14 @@ TypedLine read_line(const std::string& line) {
   if (request->verb == command::verb("stop"))
     return {Kind::stop, {}, request->all ? std::vector<std::string>{} : request->robots};
   return {Kind::order};
+}
+
+bool line_is_held(const std::string& line, std::size_t heard) {
+  const auto request = command::parse(line);
+  if (!request || request->info->runs == command::Runs::query) return false;
+  std::string action(request->info->name);
+  if (const std::string mode = request->word("MODE"); !mode.empty()) action += "_" + mode;
+  return needs_hold(action, request->all ? heard : request->robots.size());
 }
 
 }  // namespace adit::gui

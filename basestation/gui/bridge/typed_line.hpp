@@ -22,5 +22,8 @@ struct TypedLine {
   std::vector<std::string> robots{};  ///< Of a stop; empty: all.
 };
 TypedLine read_line(const std::string& line);
+/// Whether a line commands so many robots that it is confirmed; see needs_hold(). `heard`: how many "all"
+/// are.
+bool line_is_held(const std::string& line, std::size_t heard);
 
 }  // namespace adit::gui

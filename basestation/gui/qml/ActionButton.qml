@@ -11,6 +11,7 @@ Rectangle {
     required property string label
     required property string key
     required property string hint
+    required property string shortHint
     required property string names
     required property bool possible
     required property string touch
@@ -24,8 +25,9 @@ Rectangle {
     border.color: state_ === "sent" ? Theme.goal : state_ === "done" ? Theme.ok : state_ === "refused" ? Theme.bad : Theme.edge
 
     PlainLabel {
-        x: 0.5 * Theme.mm
-        y: 1 * Theme.mm
+        objectName: "buttonLabel"
+        x: 0.1 * Theme.mm
+        y: -0.7 * Theme.mm
         width: parent.width - 2 * x
         height: 6 * Theme.mm
         horizontalAlignment: Text.AlignHCenter
@@ -33,15 +35,19 @@ Rectangle {
         color: button.aims ? Theme.ink : Theme.text
         text: (button.state_ === "done" ? "✓ " : button.state_ === "refused" ? "✗ " : "") + button.label + (button.key === "" ? "" : " " + button.key)
     }
-    PlainLabel {
+    FittedLabel {
+        readonly property string how: button.possible && (button.touch === "hold" || button.touch === "place_held") ? "hold: " : ""
         objectName: "buttonHint"
         x: 0.5 * Theme.mm
-        y: 7 * Theme.mm
+        y: 4.4 * Theme.mm
         width: parent.width - 2 * x
-        height: 5 * Theme.mm
+        height: 8.6 * Theme.mm
         horizontalAlignment: Text.AlignHCenter
+        wrapMode: Text.Wrap
+        maximumLineCount: 2
         color: button.aims ? Theme.ink : Theme.dim
-        text: button.touch === "hold" && button.possible ? "hold: " + (button.hint === "" ? button.names : button.hint) : button.hint === "" ? button.names : button.hint
+        full: how + (button.hint === "" ? button.names : button.hint)
+        brief: how + button.shortHint
     }
     Rectangle {
         width: parent.width * area.progress

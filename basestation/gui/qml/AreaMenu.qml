@@ -25,9 +25,9 @@ Rectangle {
             width: Math.min(implicitWidth, 60 * Theme.mm)
             text: menu.area.text
         }
-        HoldButton { objectName: "area_keep_out"; height: parent.height; text: "keep out"; meaning: menu.area.text; onFired: menu.area.apply("keep_out") }
-        HoldButton { objectName: "area_keep_in"; height: parent.height; text: "keep in"; meaning: menu.area.text; onFired: menu.area.apply("keep_in") }
-        HoldButton { objectName: "area_prefer"; height: parent.height; text: "explore first"; meaning: menu.area.text; onFired: menu.area.apply("prefer") }
+        HoldButton { objectName: "area_keep_out"; height: parent.height; text: "keep out"; hold: menu.area.held; meaning: menu.area.text; onFired: held => menu.area.apply("keep_out", held) }
+        HoldButton { objectName: "area_keep_in"; height: parent.height; text: "keep in"; hold: menu.area.held; meaning: menu.area.text; onFired: held => menu.area.apply("keep_in", held) }
+        HoldButton { objectName: "area_prefer"; height: parent.height; text: "explore first"; hold: menu.area.held; meaning: menu.area.text; onFired: held => menu.area.apply("prefer", held) }
         HoldButton { objectName: "area_cancel"; width: 10 * Theme.mm; height: parent.height; text: "×"; spoken: "no area"; onFired: menu.area.active = false }
     }
 }

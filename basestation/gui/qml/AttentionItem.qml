@@ -9,11 +9,15 @@ Rectangle {
     required property string need
     required property bool urgent
     required property string who
+    required property string shortWho
     required property string line
+    required property string shortLine
     required property string since
     required property bool canSee
     required property bool canWait
     required property string grantLabel
+    property int maximumLines: 2
+    readonly property double wantedHeight: full.implicitHeight + 3 * Theme.mm
     readonly property color ink: urgent ? Theme.ink : Theme.text
 
     radius: 1 * Theme.mm
@@ -41,26 +45,40 @@ Rectangle {
         x: 2 * Theme.mm
         anchors.verticalCenter: parent.verticalCenter
     }
-    PlainLabel {
+    FittedLabel {
         id: name
+        objectName: "who_" + item.need
         anchors.left: mark.right
         anchors.leftMargin: 1.6 * Theme.mm
-        width: Math.min(implicitWidth, 26 * Theme.mm)
+        width: Math.min(fullWidth, 30 * Theme.mm)
         height: parent.height
-        text: item.who
+        wrapMode: Text.Wrap
+        maximumLineCount: 2
+        full: item.who
+        brief: item.shortWho
         font.bold: true
         color: item.ink
     }
-    PlainLabel {
+    FittedLabel {
+        id: text
         objectName: "need_" + item.need
         anchors.left: name.right
         anchors.leftMargin: 2 * Theme.mm
         anchors.right: age.left
         height: parent.height
         wrapMode: Text.Wrap
-        maximumLineCount: 2
-        text: item.line
+        maximumLineCount: item.maximumLines
+        full: item.line
+        brief: item.shortLine
         color: item.ink
+    }
+    PlainLabel {
+        id: full
+        visible: false
+        width: text.width
+        wrapMode: Text.Wrap
+        maximumLineCount: item.maximumLines
+        text: item.line
     }
     PlainLabel {
         id: age

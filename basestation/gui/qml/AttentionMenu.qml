@@ -24,7 +24,8 @@ Rectangle {
         delegate: AttentionItem {
             attention: menu.attention
             width: list.width
-            height: 12 * Theme.mm
+            height: Math.max(12 * Theme.mm, wantedHeight)
+            maximumLines: 8
         }
     }
 }

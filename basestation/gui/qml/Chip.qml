@@ -6,11 +6,12 @@ import Adit
 Rectangle {
     id: chip
     property string text
+    property string brief: text
     property string shape
     property color fill: Theme.none
 
     // Of the text itself: the width of the row follows the chip's.
-    implicitWidth: label.implicitWidth + (shape === "" ? 2.4 : 6.8) * Theme.mm
+    implicitWidth: label.fullWidth + (shape === "" ? 2.4 : 6.8) * Theme.mm
     implicitHeight: 5 * Theme.mm
     radius: 0.8 * Theme.mm
     color: fill
@@ -30,12 +31,14 @@ Rectangle {
             height: width
             anchors.verticalCenter: parent.verticalCenter
         }
-        PlainLabel {
+        FittedLabel {
             id: label
-            text: chip.text
+            objectName: "headlineText"
+            full: chip.text
+            brief: chip.brief
             color: Theme.ink
             font.bold: true
-            width: Math.min(implicitWidth, chip.width - (chip.shape === "" ? 1.6 : 6) * Theme.mm)
+            width: Math.min(fullWidth, chip.width - (chip.shape === "" ? 1.6 : 6) * Theme.mm)
         }
     }
 }

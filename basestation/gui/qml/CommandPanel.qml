@@ -96,7 +96,9 @@ Rectangle {
                 width: 20 * Theme.mm
                 height: parent.height
                 text: "run"
-                onFired: panel.line.run()
+                hold: panel.line.held
+                meaning: panel.line.held ? panel.line.line : ""
+                onFired: held => panel.line.run(held)
             }
             HoldButton {
                 id: close

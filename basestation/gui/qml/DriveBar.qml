@@ -16,6 +16,8 @@ Rectangle {
         height: parent.height
         font.bold: true
         font.pixelSize: 4 * Theme.mm
+        wrapMode: Text.Wrap
+        maximumLineCount: 3
         color: bar.drive.good ? Theme.goal : Theme.bad
         text: "DRIVING " + bar.drive.robot
     }

@@ -11,13 +11,13 @@ Item {
     height: 5.2 * Theme.mm
 
     PlainLabel {
-        width: 13 * Theme.mm
+        width: 16 * Theme.mm
         height: parent.height
         text: row.time
         color: Theme.dim
     }
     Glyph {
-        x: 14 * Theme.mm
+        x: 17 * Theme.mm
         width: 3.4 * Theme.mm
         height: width
         anchors.verticalCenter: parent.verticalCenter
@@ -27,14 +27,14 @@ Item {
         outline: Theme.ink
     }
     PlainLabel {
-        x: 19 * Theme.mm
+        x: 22 * Theme.mm
         width: 30 * Theme.mm
         height: parent.height
         text: row.who
         color: Theme.dim
     }
     PlainLabel {
-        x: 50 * Theme.mm
+        x: 53 * Theme.mm
         width: parent.width - x
         height: parent.height
         text: row.line

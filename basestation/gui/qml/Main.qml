@@ -12,13 +12,14 @@ Window {
     minimumHeight: 500
     color: Theme.ground
     title: "Adit " + control.operatorName
-    onActiveChanged: control.forgetKeys()
+    onActiveChanged: control.setFocused(active)
+    onActiveFocusItemChanged: control.forgetKeys()
 
     FocusScope {
         anchors.fill: parent
         focus: true
         Keys.onPressed: event => event.accepted = window.control.pressKey(event.key, event.modifiers, event.nativeScanCode, event.isAutoRepeat)
-        Keys.onReleased: event => event.accepted = window.control.releaseKey(event.key, event.isAutoRepeat)
+        Keys.onReleased: event => event.accepted = window.control.releaseKey(event.key, event.nativeScanCode, event.isAutoRepeat)
 
         TopBar {
             id: top

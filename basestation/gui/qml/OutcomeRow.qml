@@ -16,14 +16,17 @@ Rectangle {
         anchors.verticalCenter: parent.verticalCenter
         color: row.control.outcomeKind === "done" ? Theme.ok : row.control.outcomeKind === "refused" ? Theme.bad : row.control.outcomeKind === "sent" ? Theme.goal : Theme.edge
     }
-    PlainLabel {
+    FittedLabel {
         objectName: "outcome"
         anchors.left: mark.right
         anchors.leftMargin: 2 * Theme.mm
         anchors.right: command.left
         anchors.rightMargin: 2 * Theme.mm
         height: parent.height
-        text: row.control.outcome === "" ? "No command yet. Tap a robot, then an action; press and hold on the map to send it there." : row.control.outcome
+        wrapMode: Text.Wrap
+        maximumLineCount: 2
+        brief: row.control.outcomeShort
+        full: row.control.outcome === "" ? "No command yet. Tap a robot, then an action; press and hold on the map to send it there." : row.control.outcome
         color: row.control.outcome === "" ? Theme.dim : Theme.text
     }
     HoldButton {

@@ -30,13 +30,15 @@ Rectangle {
             required property string cureLine
             required property bool cureHold
             width: list.width
-            height: 10 * Theme.mm
+            height: Math.max(10 * Theme.mm, reason.implicitHeight + 2 * Theme.mm)
             PlainLabel {
+                id: reason
+                objectName: "reason"
                 x: 2 * Theme.mm
                 width: (cure.visible ? cure.x : parent.width) - 4 * Theme.mm
-                height: parent.height
+                anchors.verticalCenter: parent.verticalCenter
                 wrapMode: Text.Wrap
-                maximumLineCount: 2
+                maximumLineCount: 10
                 text: line.label + "  —  " + line.names + ": " + line.why
             }
             HoldButton {

@@ -11,9 +11,11 @@ Rectangle {
     required property string holder
     required property string owner
     required property string headline
+    required property string shortHeadline
     required property string token
     required property string shape
     required property string detail
+    required property string shortDetail
     required property string battery
     required property string speed
     required property string goal
@@ -76,16 +78,18 @@ Rectangle {
         y: badge.y + 1 * Theme.mm
         width: Math.min(implicitWidth, 38 * Theme.mm)
         text: card.headline
+        brief: card.shortHeadline
         shape: card.shape
         fill: card.token === "ok" ? Theme.ok : card.token === "warn" ? Theme.warn : card.token === "bad" ? Theme.bad : Theme.none
     }
-    PlainLabel {
+    FittedLabel {
         objectName: "detail"
         x: 2 * Theme.mm
         y: 9.4 * Theme.mm
         width: parent.width - 2 * x
         height: 5 * Theme.mm
-        text: card.holder + "  ·  " + card.detail
+        full: card.holder + "  ·  " + card.detail
+        brief: card.shortDetail
     }
     Row {
         objectName: "values_" + card.name

@@ -24,9 +24,9 @@ Rectangle {
     }
     PlainLabel {
         x: 10 * Theme.mm
-        y: 3 * Theme.mm
+        y: 1.5 * Theme.mm
         width: parent.width - 11 * Theme.mm
-        height: 8 * Theme.mm
+        height: 9 * Theme.mm
         text: "SOFTWARE\nSTOP ALL"
         maximumLineCount: 2
         elide: Text.ElideNone
@@ -34,13 +34,16 @@ Rectangle {
         font.bold: true
         font.pixelSize: 3.6 * Theme.mm
     }
-    PlainLabel {
+    FittedLabel {
         objectName: "stopText"
         x: 10 * Theme.mm
-        y: 13 * Theme.mm
+        y: 10.4 * Theme.mm
         width: parent.width - 11 * Theme.mm
-        height: 5 * Theme.mm
-        text: stop.control.stopText
+        height: 9 * Theme.mm
+        wrapMode: Text.Wrap
+        maximumLineCount: 2
+        full: stop.control.stopText
+        brief: stop.control.stopTextShort
         color: Theme.ink
     }
     PressArea {

@@ -44,10 +44,14 @@ Rectangle {
             color: Theme.dim
             Layout.fillWidth: true
         }
-        PlainLabel {
+        FittedLabel {
             objectName: "silent"
             visible: bar.control.silentText !== ""
-            text: bar.control.silentText
+            wrapMode: Text.Wrap
+            maximumLineCount: 2
+            Layout.fillHeight: true
+            full: bar.control.silentText
+            brief: bar.control.silentTextShort
             color: parent.ink
             font.bold: true
             Layout.fillWidth: true

@@ -23,15 +23,21 @@ GestureArea::GestureArea(QQuickItem* parent) : QQuickItem(parent) {
 
 void GestureArea::press(const QPointF& at, bool aim) {
   start_ = last_ = at;
+  since_.start();
   if (drawing()) {
     state_ = State::drawing;
     return;
   }
-  state_ = aim || aiming() ? State::aimed : State::pressed;
-  if (state_ == State::aimed)
-    show_aim(at);
-  else
-    timer_.start(Theme::instance().glove() ? kGlovePress : kLongPress, this);
+  if (aim || aiming()) return take_aim();
+  state_ = State::pressed;
+  timer_.start(Theme::instance().glove() ? kGlovePress : kLongPress, this);
+}
+
+void GestureArea::take_aim() {
+  constexpr int kRingPeriod = 33;  // ms
+  state_ = State::aimed;
+  show_aim(start_);
+  if (needs_hold() && held_share() < 1.0) timer_.start(kRingPeriod, this);
 }
 
 void GestureArea::leave_press() {
@@ -60,7 +66,7 @@ void GestureArea::release(const QPointF& at, bool add) {
   leave_press();
   state_ = State::idle;
   if (was == State::pressed) tap(start_, add);
-  if (was == State::aimed) send_aim(start_);
+  if (was == State::aimed) send_aim(start_, held_share() >= 1.0);
 }
 
 void GestureArea::drop_press() {
@@ -76,9 +82,7 @@ void GestureArea::cancel() {
 void GestureArea::timerEvent(QTimerEvent* event) {
   if (event->timerId() != timer_.timerId()) return;
   timer_.stop();
-  if (state_ != State::pressed) return;
-  state_ = State::aimed;
-  show_aim(start_);
+  if (state_ == State::pressed || state_ == State::aimed) take_aim();
 }
 
 void GestureArea::mousePressEvent(QMouseEvent* event) {

@@ -2,7 +2,9 @@
 #pragma once
 #include <QtQml/qqmlregistration.h>
 #include <QBasicTimer>
+#include <QElapsedTimer>
 #include <QQuickItem>
+#include <algorithm>
 
 namespace adit::gui {
 
@@ -16,6 +18,7 @@ class GestureArea : public QQuickItem {
  public:
   static constexpr int kLongPress = 600;   ///< Time until a press means a place to drive to, ms.
   static constexpr int kGlovePress = 800;  ///< The same in glove mode.
+  static constexpr int kHold = 800;        ///< Time of a press that is held, ms.
   static constexpr double kSlopMm = 3.0;   ///< A finger that moves less has not moved.
 
   explicit GestureArea(QQuickItem* parent = nullptr);
@@ -29,9 +32,12 @@ class GestureArea : public QQuickItem {
   virtual bool drawing() const { return false; }
   virtual double slop() const = 0;  ///< Pixels.
   virtual void tap(const QPointF& at, bool add) = 0;
+  /// Whether what a place is sent to needs a press that is held.
+  virtual bool needs_hold() const = 0;
   virtual void show_aim(const QPointF& at) = 0;  ///< The place that would be sent.
   virtual void drop_aim() = 0;
-  virtual void send_aim(const QPointF& at) = 0;
+  /// `held`: it was pressed for kHold, or longer.
+  virtual void send_aim(const QPointF& at, bool held) = 0;
   /// A rectangle from corner to corner; `done`: the finger was lifted.
   virtual void draw(const QPointF& /*from*/, const QPointF& /*to*/, bool /*done*/) {}
   virtual void drop_drawing() {}
@@ -40,6 +46,9 @@ class GestureArea : public QQuickItem {
 
   /// Takes back what a finger that is down would do when it is lifted.
   void drop_press();
+  /// How much of kHold the present press has lasted, [0, 1].
+  double held_share() const { return std::min(1.0, static_cast<double>(since_.elapsed()) / kHold); }
+  const QPointF& pressed_at() const { return start_; }
   bool pinching() const { return state_ == State::pinching; }
   /// The mouse drags with its right button, or with the shift key.
   bool sliding() const { return sliding_; }
@@ -58,6 +67,7 @@ class GestureArea : public QQuickItem {
   enum class State : std::uint8_t { idle, pressed, aimed, drawing, panning, pinching, ignored };
 
   void press(const QPointF& at, bool aim);
+  void take_aim();
   void move(const QPointF& at);
   void release(const QPointF& at, bool add);
   void cancel();
@@ -66,7 +76,8 @@ class GestureArea : public QQuickItem {
 
   State state_{State::idle};
   bool sliding_{false};
-  QBasicTimer timer_{};
+  QBasicTimer timer_{};  ///< Runs until a press means a place, and then for its ring.
+  QElapsedTimer since_{};
   QPointF start_{}, last_{};
   double spread_{};  ///< Distance between two fingers, pixels.
 };

@@ -80,6 +80,8 @@ void MapView::refresh() {
                           .silent = control_->silent_for(),
                           .mm = Theme::instance().mm()}));
   append(marks, floor_marks(layers));
+  if (aims() && needs_hold())
+    add_ring(marks, {pressed_at().x(), pressed_at().y()}, held_share(), Theme::instance().mm());
   marks_->show(std::move(marks), camera_);
 }
 
@@ -159,12 +161,12 @@ void MapView::drop_aim() {
   refresh();
 }
 
-void MapView::send_aim(const QPointF& at) {
+void MapView::send_aim(const QPointF& at, bool held) {
   if (!control_) return;
   const Point place = camera_.to_map(at.x(), at.y());
   std::optional<double> height;  // Only one of several floors has to be named.
   if (const auto floor = shown_floor()) height = ground_at(*control_->map(), *floor, place);
-  control_->go_to(place, height);
+  control_->go_to(place, height, held);
 }
 
 void MapView::draw(const QPointF& from, const QPointF& to, bool done) {

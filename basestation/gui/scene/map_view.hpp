@@ -68,7 +68,8 @@ class MapView : public adit::gui::GestureArea {
   void tap(const QPointF& at, bool add) override;
   void show_aim(const QPointF& at) override;
   void drop_aim() override;
-  void send_aim(const QPointF& at) override;
+  bool needs_hold() const override { return control_ && control_->goto_is_held(); }
+  void send_aim(const QPointF& at, bool held) override;
   void draw(const QPointF& from, const QPointF& to, bool done) override;
   void drop_drawing() override;
   void pan(const QPointF& by) override;

@@ -110,6 +110,8 @@ void MapView3D::refresh() {
                              .ghosts = ghosts_,
                              .silent = control_->silent_for(),
                              .mm = Theme::instance().mm()}));
+  if (aims() && needs_hold())
+    add_ring(marks, {pressed_at().x(), pressed_at().y()}, held_share(), Theme::instance().mm());
   marks_->show(std::move(marks), {.scale = 0.0});
 }
 
@@ -184,10 +186,10 @@ void MapView3D::drop_aim() {
   refresh();
 }
 
-void MapView3D::send_aim(const QPointF& at) {
+void MapView3D::send_aim(const QPointF& at, bool held) {
   if (!control_) return;
   if (const auto place = place_at(at))
-    control_->go_to({place->x, place->y}, place->z);
+    control_->go_to({place->x, place->y}, place->z, held);
   else
     control_->say("Go to: nothing of the map is there", "refused");
 }

@@ -86,7 +86,8 @@ class MapView3D : public adit::gui::GestureArea {
   void tap(const QPointF& at, bool add) override;
   void show_aim(const QPointF& at) override;
   void drop_aim() override;
-  void send_aim(const QPointF& at) override;
+  bool needs_hold() const override { return control_ && control_->goto_is_held(); }
+  void send_aim(const QPointF& at, bool held) override;
   void pan(const QPointF& by) override;
   void zoom(double factor, const QPointF& about) override;
   void timerEvent(QTimerEvent* event) override;

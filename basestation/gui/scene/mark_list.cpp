@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "basestation/gui/scene/state.hpp"
+#include "basestation/model/numbering.hpp"
 #include "basestation/model/route.hpp"
 #include "basestation/model/text.hpp"
 
@@ -20,7 +21,8 @@ constexpr double kReachLimit = 30.0;      // Radius in which a lost robot is exp
 
 class Drawer {
  public:
-  explicit Drawer(const MarkScene& scene) : scene_(scene), camera_(scene.camera) {}
+  explicit Drawer(const MarkScene& scene)
+      : scene_(scene), camera_(scene.camera), numbers_(station::numbers_of(*scene.world)) {}
 
   MarkList draw() {
     const station::World& world = *scene_.world;
@@ -57,7 +59,7 @@ class Drawer {
   }
   /// `robot`: one of the world's.
   std::string number(const Robot& robot) const {
-    return std::to_string(&robot - scene_.world->robots.data() + 1);
+    return std::to_string(numbers_[static_cast<std::size_t>(&robot - scene_.world->robots.data())]);
   }
 
   void draw_area(const station::AreaView& area) {
@@ -252,6 +254,7 @@ class Drawer {
 
   const MarkScene& scene_;
   const Camera& camera_;
+  std::vector<int> numbers_;
   MarkList out_{};
 };
 
@@ -294,6 +297,16 @@ void cross_out(MarkList& marks, const Point& at) {
     marks.shapes.push_back({.points = {{at.x - 12, at.y - side * 12}, {at.x + 12, at.y + side * 12}},
                             .line = Token::bad,
                             .width = 3.0});
+}
+
+void add_ring(MarkList& marks, const Point& at, double share, double mm) {
+  constexpr int kSteps = 48;
+  Shape ring{.points = circle(at, 8.0 * mm, kSteps), .closed = true, .line = Token::dim, .width = 2.0};
+  const auto filled = static_cast<std::ptrdiff_t>(std::clamp(share, 0.0, 1.0) * kSteps);
+  Shape arc{.points = {ring.points.begin(), ring.points.begin() + filled}, .line = Token::goal, .width = 6.0};
+  arc.closed = filled == kSteps;
+  marks.shapes.push_back(std::move(ring));
+  if (arc.points.size() > 1) marks.shapes.push_back(std::move(arc));
 }
 
 double extent_of(const Robot& robot) {

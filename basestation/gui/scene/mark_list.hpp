@@ -77,6 +77,8 @@ Shape diamond(const Point& at, double radius, Token fill);
 void add_station(MarkList& marks, const station::StationSummary& station, const Point& at);
 /// Crosses out a goal that cannot be reached, pixels.
 void cross_out(MarkList& marks, const Point& at);
+/// A ring around a place that is pressed, filled by that share, pixels. `mm`: pixels per mm.
+void add_ring(MarkList& marks, const Point& at, double share, double mm);
 /// The larger side of a robot, m; 0.8 if it is not known.
 double extent_of(const station::Robot& robot);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "basestation/gui/scene/state.hpp"
+#include "basestation/model/numbering.hpp"
 #include "basestation/model/route.hpp"
 #include "basestation/model/text.hpp"
 
@@ -24,10 +25,11 @@ class OrbitDrawer {
     for (const Robot& robot : scene_.world->robots) draw_areas(robot);
     for (const Robot& robot : scene_.world->robots) draw_trail(robot);
     for (const station::StationSummary& station : scene_.world->stations) draw_station(station);
-    int number = 0;
-    for (const Robot& robot : scene_.world->robots) draw_goal(robot, std::to_string(++number));
-    number = 0;
-    for (const Robot& robot : scene_.world->robots) draw_robot(robot, std::to_string(++number));
+    const std::vector<int> numbers = station::numbers_of(*scene_.world);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      draw_goal(scene_.world->robots[i], std::to_string(numbers[i]));
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      draw_robot(scene_.world->robots[i], std::to_string(numbers[i]));
     for (const Point3& ghost : scene_.ghosts)
       if (const auto seen = scene_.camera.project(ghost)) {
         Shape mark = diamond(seen->at, 9.0, Token::goal);
