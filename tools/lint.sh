@@ -145,7 +145,7 @@ check_sleeps() {
 # live::Domains (process.cpp) are the machine's, and domains above 232 are none.
 check_sharing() {
   files -name '*.hpp' -o -name '*.cpp' -o -name '*.sh' | grep '^tests/' | grep -v '^tests/lint/\|^tests/folders/\|^tests/live/isolated.sh' |
-    xargs -r grep -nE 'temp_directory_path|TempDir\(|mk[ds]temp\(|tmpnam|/tmp\b|htons\([1-9]|domain = [0-9]|"--(robot-)?domain", "[0-9]' /dev/null |
+    xargs -r grep -nE 'temp_directory_path|TempDir\(|mk[ds]temp\(|tmpnam|/tmp\b|htons\([1-9]|domain = [0-9]|"--(robot-)?domain", "[0-9]+"' /dev/null |
     grep -vE '^tests/live/process.cpp:.*temp_directory_path|domain(",)? [="]+ ?(23[3-9]|[3-9][0-9]{2})\b' | sed 's/$/   <- shared with other tests/'
 }
 

@@ -174,7 +174,7 @@ TEST_F(ServerTest, FilesAreRelativeToTheFolderOfTheFrontEnd) {
   talk.say({{"front_end", "shell"}, {"folder", "/home/op"}});
   EXPECT_EQ(error("site"), "map: /home/op/site: a picture is a .png\n");
   EXPECT_EQ(error("'../a site'"), "map: /home/a site: a picture is a .png\n");
-  EXPECT_EQ(error("/tmp/site"), "map: /tmp/site: a picture is a .png\n");
+  EXPECT_EQ(error("/srv/site"), "map: /srv/site: a picture is a .png\n");
   EXPECT_EQ(error("picture"), "map: /home/op/picture: a picture is a .png\n") << "a name like the keyword's";
 }
 
