@@ -28,9 +28,9 @@ inline Eigen::Vector3d log_so3(const Eigen::Quaterniond& rotation) {
   return s < 1e-10 ? Eigen::Vector3d(2 * q.vec()) : Eigen::Vector3d(2 * std::atan2(s, q.w()) / s * q.vec());
 }
 
-/// The smallest rotation that turns the direction of `from` into that of `to`; neither is zero. Opposite directions
-/// are half a turn apart about any axis across them. Eigen's FromTwoVectors takes a singular value decomposition for
-/// those, which costs seven seconds of compiling in each file that calls it.
+/// The smallest rotation that turns the direction of `from` into that of `to`; neither is zero. Opposite
+/// directions are half a turn apart about any axis across them. Eigen's FromTwoVectors takes a singular value
+/// decomposition for those, which costs seven seconds of compiling in each file that calls it.
 inline Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d a = from.normalized(), b = to.normalized();
   const double c = b.dot(a);
