@@ -69,15 +69,16 @@ endfunction()
 
 # adit_test(NAME SOURCES ... LINK dep ... [LABELS label ...] [TIMEOUT seconds] [SERIAL] [FIXTURE name])
 # A GoogleTest program test_NAME; each of its cases is one ctest. Target adit_tests builds all of them but those that only
-# `./run test long` runs, which target adit_long_tests builds.
+# `./run test long` runs, which target adit_long_tests builds: each of those programs is one ctest.
 # Labels: unit (default, milliseconds), rehearsal, live (processes over Fast DDS), slow, long (soaks, fuzzing, campaigns
 # and benchmarks: run by `./run test long` alone).
 # Each case of a live test has a network and folders of its own (tests/live/isolated.sh), so all run side by side. They
 # run once more with the limits of an idle machine, label long, as NAME.InTime.
 # SERIAL: its cases never run beside other tests. FIXTURE: the ctest fixture that they need.
-# Under sanitizers only what these can find faults in is built: address takes those labelled unit of the folders that read
-# foreign bytes, store, or have states; thread takes those in tests/client, tests/core, tests/wire (live ones over Fast DDS
-# too) and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
+# Under sanitizers only some are built: address takes those labelled unit of the folders that read foreign bytes, store, or
+# have states (with ADIT_SANITIZE_ALL, of all folders: ./run test long); thread takes those in tests/client, tests/core,
+# tests/wire (live ones over Fast DDS too) and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
+option(ADIT_SANITIZE_ALL "Under the address sanitizer, build the unit tests of all folders")
 function(adit_test name)
   if(NOT ADIT_TESTS)
     return()
@@ -89,8 +90,10 @@ function(adit_test name)
   get_filename_component(part ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   if(ADIT_SANITIZE AND arg_NO_SANITIZE)
     return()
-  elseif(ADIT_SANITIZE MATCHES address AND NOT ("unit" IN_LIST arg_LABELS AND part MATCHES
-         "^(agent|bt|client|cloud|command|core|findings|map|perception|record|station|store|transfer|wire)$"))
+  elseif(ADIT_SANITIZE MATCHES address AND NOT "unit" IN_LIST arg_LABELS)
+    return()
+  elseif(ADIT_SANITIZE MATCHES address AND NOT ADIT_SANITIZE_ALL AND NOT part MATCHES
+         "^(agent|bt|client|cloud|command|core|findings|gui|live|perception|record|station|store|transfer|wire)$")
     return()
   elseif(ADIT_SANITIZE STREQUAL thread AND NOT part MATCHES "^(client|core|wire|live)$")
     return()
@@ -103,11 +106,11 @@ function(adit_test name)
   endif()
   add_executable(test_${name} ${arg_SOURCES})
   if("live" IN_LIST arg_LABELS)
-    # What CMake puts before a program that is a test.
+    # CMake runs a test program through this wrapper.
     set_target_properties(test_${name} PROPERTIES CROSSCOMPILING_EMULATOR ${PROJECT_SOURCE_DIR}/tests/live/isolated.sh)
     add_test(NAME ${name}.InTime COMMAND test_${name})
-    set_tests_properties(${name}.InTime PROPERTIES
-      LABELS long TIMEOUT 3600 RUN_SERIAL TRUE ENVIRONMENT ADIT_PATIENCE=1)
+    set_tests_properties(${name}.InTime PROPERTIES LABELS long TIMEOUT 3600 RUN_SERIAL TRUE ENVIRONMENT ADIT_PATIENCE=1
+      FIXTURES_REQUIRED "${arg_FIXTURE}")
   endif()
   target_link_libraries(test_${name} PRIVATE ${arg_LINK} adit_folders GTest::gmock GTest::gtest_main)
   # These folders' tests generate and search clouds and maps.
@@ -118,11 +121,13 @@ function(adit_test name)
   adit_test_headers(test_${name} ${optimised})
   # Parsing of headers is most of what a test takes to compile: more files share it than those of libraries.
   set_target_properties(test_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
-  set(group adit_tests)
   if("long" IN_LIST arg_LABELS)
-    set(group adit_long_tests)
+    add_dependencies(adit_long_tests test_${name})
+    add_test(NAME ${name} COMMAND test_${name})
+    set_tests_properties(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} RUN_SERIAL TRUE)
+    return()
   endif()
-  add_dependencies(${group} test_${name})
+  add_dependencies(adit_tests test_${name})
   set(serial "")
   if(arg_SERIAL)
     set(serial RUN_SERIAL TRUE)
@@ -131,15 +136,12 @@ function(adit_test name)
   if(arg_FIXTURE)
     set(fixture FIXTURES_REQUIRED ${arg_FIXTURE})
   endif()
-  # What takes long is started first, so that nothing is left to run alone at the end. Live tests mostly wait: ./run gives
-  # ctest more slots than there are processors, of which each other test takes three.
-  set(cost PROCESSORS 3)
-  if("live" IN_LIST arg_LABELS)
+  # ctest starts expensive tests first, so that none is left to run alone at the end.
+  set(cost "")
+  if("rehearsal" IN_LIST arg_LABELS)
     set(cost COST 20)
-  elseif("rehearsal" IN_LIST arg_LABELS)
-    list(APPEND cost COST 20)
   endif()
-  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} ${serial} ${cost} ${fixture})
 endfunction()
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# What is worth reading of a ctest run: a line every hundred tests, every test that did not pass, one that passed only
-# when it was run again, ctest's own summary, and last the names of those that needed a second try. All of it is in
-# build/PRESET/Testing/Temporary/LastTest.log.
+# The relevant lines of a ctest run: one every hundred tests, every test that did not pass, one that passed only when it
+# was run again, ctest's own summary, and last the names of those that needed a second try, which are also appended to
+# the file `second_tries`. All of it is in build/PRESET/Testing/Temporary/LastTest.log.
 function shortened(line) {
   sub(/ *# (GetParam|TypeParam).* \.\.\./, " ...", line)
   gsub(/ ?\.\.\.+ ?/, " .. ", line)
@@ -16,7 +16,10 @@ function name_of(line) {
 / Test +#[0-9]+: / {
   name = name_of($0)
   if ($0 !~ / Passed +[0-9.]+ sec/) failed[name] = 1
-  else if (name in failed) second_try = second_try (second_try == "" ? "" : ", ") name
+  else if (name in failed) {
+    second_try = second_try (second_try == "" ? "" : ", ") name
+    if (second_tries != "") print name >> second_tries
+  }
   else if (++passed % 100 != 0) next
   print shortened($0)
   fflush()

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Seconds kCommandLimit{60};
+constexpr Seconds kCommandLimit{30};
 constexpr Seconds kOutputLimit{20};  ///< From a command to the output that the page shows for it.
 constexpr Seconds kEndLimit{10};     ///< From the last command of a page to the end of all that it started.
 

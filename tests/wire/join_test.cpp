@@ -109,8 +109,8 @@ class TwoMachines {
     return eventually(up, Seconds(5)) ? "" : "the link does not come up";
   }
 
-  Process left{{"/usr/bin/unshare", "-n", "/usr/bin/sleep", "60"}};
-  Process right{{"/usr/bin/unshare", "-n", "/usr/bin/sleep", "60"}};
+  Process left{{"/usr/bin/unshare", "-n", "/usr/bin/sleep", "infinity"}};
+  Process right{{"/usr/bin/unshare", "-n", "/usr/bin/sleep", "infinity"}};
 
  private:
   static bool ip(const Process& machine, const std::string& command) {
