@@ -41,9 +41,10 @@ class HostsTest : public testing::Test {
   Process station(const std::vector<std::string>& peers = {}) {
     std::vector<std::string> words{"basestation", "--name", "op1", "--interface", hosts_->address("base")};
     for (const std::string& peer : peers) words.insert(words.end(), {"--peer", peer});
-    words.emplace_back("--serve=-1");
+    words.emplace_back("--serve=1");
     Process process = hosts_->start("base", words, folder_.environment());
-    EXPECT_TRUE(eventually([&] { return op({"list"}).exit_code == 0; })) << process.err();
+    // A command before the station is ready would start another one of that name, outside its host.
+    EXPECT_TRUE(process.wait_for_output("ready", Seconds(10))) << process.err();
     return process;
   }
   /// A command of the operator, through his station's socket.

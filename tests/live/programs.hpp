@@ -27,10 +27,13 @@ class Programs : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return Process(words, folder_.environment());
   }
-  /// A station as a child of the test, so that it can be killed.
+  /// A station as a child of the test, so that it can be killed. It is ready: a command before that would
+  /// start another one of that name.
   Process station(const std::string& name) {
-    return Process({"basestation", "--name", name, "--domain", std::to_string(domain()), "--serve=-1"},
-                   folder_.environment());
+    Process process({"basestation", "--name", name, "--domain", std::to_string(domain()), "--serve=1"},
+                    folder_.environment());
+    EXPECT_TRUE(process.wait_for_output("ready", Seconds(10))) << process.err();
+    return process;
   }
   Finished cli(std::vector<std::string> words) {
     words.insert(words.begin(), {"basestation", "--domain", std::to_string(domain())});

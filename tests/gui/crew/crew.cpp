@@ -56,9 +56,13 @@ Crew::Crew(const Mission& mission, double max_speed)
   for (std::size_t number : {1, 2}) {
     const std::string name = "op" + std::to_string(number);
     hosts_.add(name, address(100 + number));
-    stations_.push_back(hosts_.start(
-        name, {"basestation", "--name", name, "--interface", address(100 + number), "--serve=-1"},
-        environment_));
+    stations_.push_back(
+        hosts_.start(name, {"basestation", "--name", name, "--interface", address(100 + number), "--serve=1"},
+                     environment_));
+    if (!stations_.back().wait_for_output("ready", Seconds(10))) {
+      failure_ = name + " does not start: " + stations_.back().err();
+      return;
+    }
   }
   for (const char* name : {"op1", "op2"})
     for (std::size_t robot = 0; robot < kRobots; ++robot)
