@@ -42,6 +42,18 @@ std::optional<SteerParams> steering(const Request& request) {
                      .duration = from_seconds(request.number("--for"))};
 }
 
+/// Whether a stop of its robot ends the command while it waits: it needs authority, so that it may clear the
+/// stop or move the robot, and does not only change who has authority.
+bool ended_by_stop(const Request& request) {
+  return request.info->conditions.holder && request.info->line != command::Line::authority;
+}
+
+bool shares_robots(const Request& one, const Request& other) {
+  return one.all || other.all ||
+         std::find_first_of(one.robots.begin(), one.robots.end(), other.robots.begin(), other.robots.end()) !=
+             one.robots.end();
+}
+
 }  // namespace
 
 Commands::Commands(const StationParams& params, Executor& strand, wire::Participant& radio, Fleet& fleet,
@@ -80,12 +92,8 @@ bool Commands::must_wait(std::uint64_t handle, const Request& request) const {
   // A stop is never delayed: it is also sent to robots that were not heard yet.
   if (request.verb == verb("stop")) return false;
   // No command overtakes an earlier one for the same robot.
-  const auto& robots = request.robots;
   if (std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& other) {
-        const auto& others = other.request.robots;
-        return other.handle < handle && (other.request.all || request.all ||
-                                         std::find_first_of(others.begin(), others.end(), robots.begin(),
-                                                            robots.end()) != others.end());
+        return other.handle < handle && shares_robots(other.request, request);
       }))
     return true;
   if (!known(request) && fresh(params_.discovery_grace)) return true;
@@ -104,11 +112,31 @@ std::uint64_t Commands::execute(const Result<Request>& request, const Done& done
 
 std::uint64_t Commands::begin(const Request& request, Done done) {
   const std::uint64_t handle = next_handle_++;
-  if (must_wait(handle, request) && waiting_.size() < kMaxWaiting)
+  if (!must_wait(handle, request))
+    run(handle, request, std::move(done));
+  else if (waiting_.size() < kMaxWaiting)
     waiting_.push_back({handle, request, std::move(done)});
   else
-    run(handle, request, std::move(done));
+    refuse(request, Reason::queue_full, std::string(describe(Reason::queue_full)), done);
+  if (request.verb == verb("stop")) drop_waiting(handle, request);
   return handle;
+}
+
+void Commands::drop_waiting(std::uint64_t handle, const Request& stop) {
+  const auto dropped = [&](const Waiting& other) {
+    return other.handle < handle && ended_by_stop(other.request) && shares_robots(other.request, stop);
+  };
+  for (auto next = std::find_if(waiting_.begin(), waiting_.end(), dropped); next != waiting_.end();
+       next = std::find_if(waiting_.begin(), waiting_.end(), dropped)) {
+    const Waiting ended = std::move(*next);
+    waiting_.erase(next);
+    refuse(ended.request, Reason::stopped, "not sent, as a stop was given after it", ended.done);
+  }
+}
+
+void Commands::refuse(const Request& request, Reason reason, const std::string& text, const Done& done) {
+  note({.command = std::string(request.info->name), .reason = reason, .text = text});
+  done(refused_outcome(request, reason, text));
 }
 
 std::uint64_t Commands::refuse(const Error& error, const Done& done) {
@@ -135,19 +163,15 @@ void Commands::run(std::uint64_t handle, const Request& request, Done done) {
   if (request.all && request.robots.empty() && request.verb != verb("stop")) {
     const auto named = with_robots_named(request, fleet_);
     if (named) return run(handle, *named, std::move(done));
-    note({.command = std::string(request.info->name), .reason = named.reason(), .text = named.error().text});
-    return done(refused_outcome(request, named.reason(), named.error().text));
+    return refuse(request, named.reason(), named.error().text, done);
   }
   if (request.info->runs == Runs::query) return answer_query(request, done);
   if (request.verb == verb("up")) {
     presence_.go_up();
     return done(done_outcome(request, "station " + params_.name + " is up\n"));
   }
-  if (!presence_.up()) {
-    const std::string why(describe(Reason::no_station));
-    note({.command = std::string(request.info->name), .reason = Reason::no_station, .text = why});
-    return done(refused_outcome(request, Reason::no_station, why));
-  }
+  if (!presence_.up())
+    return refuse(request, Reason::no_station, std::string(describe(Reason::no_station)), done);
   if (request.verb == verb("down")) return down(request, done);
   if (request.info->first_word() == "finding") return judge_finding(request, content_, done);
   if (request.verb == verb("stop") && request.all) return stop_all(request, done);

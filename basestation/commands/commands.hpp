@@ -60,6 +60,9 @@ class Commands {
   };
   std::uint64_t begin(const command::Request& request, Done done);
   std::uint64_t refuse(const Error& error, const Done& done);
+  void refuse(const command::Request& request, Reason reason, const std::string& text, const Done& done);
+  /// Refuses what is queued for the robots of a later stop and could undo it.
+  void drop_waiting(std::uint64_t handle, const command::Request& stop);
   bool must_wait(std::uint64_t handle, const command::Request& request) const;
   bool known(const command::Request& request) const;
   /// Whether a peer was heard, and of each peer all messages that `list` shows.

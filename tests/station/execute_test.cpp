@@ -416,6 +416,55 @@ TEST_F(FreshStation, ACommandGivenOnARefusalDoesNotOvertakeOneThatWaits) {
   EXPECT_EQ(robots_[0]->commands().front().command.kind(), radio::CMD_TAKE) << "goto overtook take";
 }
 
+TEST_F(FreshStation, AStopEndsWhatWaitsForItsRobots) {
+  for (const char* stop : {"stop r1", "stop r3 r1", "stop all"}) {
+    SCOPED_TRACE(stop);
+    late_.clear();
+    robots_.clear();
+    start();
+    for (const char* line : {"take r1", "reset r1", "goto r1 5 5", "mode r1 hold", "reset all", "status r1"})
+      begin(line);
+    begin(stop);
+    EXPECT_EQ(std::count_if(late_.begin(), late_.end(),
+                            [](const Outcome& outcome) { return outcome.json["reason"] == "stopped"; }),
+              4)
+        << "reset, goto, mode and reset all";
+    add("r1");
+    run_for(6s);
+    EXPECT_EQ(late_.size(), 7U) << "take and status are done, the stop has its answer";
+    EXPECT_TRUE(robots_[0]->behaviour.stopped());
+    for (const auto& heard : robots_[0]->commands())
+      EXPECT_THAT(heard.command.kind(), testing::AnyOf(radio::CMD_STOP, radio::CMD_TAKE));
+  }
+}
+
+TEST_F(FreshStation, AStopEndsNothingOfOtherRobotsAndNothingThatIsGivenAfterIt) {
+  start();
+  begin("goto r2 1 2");
+  begin("stop r1");
+  begin("reset r1");
+  add("r1");
+  add("r2");
+  run_for(6s);
+  EXPECT_EQ(robots_[0]->commands().back().command.kind(), radio::CMD_RESET);
+  ASSERT_FALSE(robots_[1]->commands().empty());
+  EXPECT_EQ(robots_[1]->commands().back().command.kind(), radio::CMD_GOTO);
+}
+
+TEST_F(FreshStation, ACommandTooManyIsRefusedAndAStopIsNot) {
+  start();
+  for (int i = 0; i < 64; ++i) begin("status r1");
+  ASSERT_TRUE(late_.empty());
+  begin("take r1");
+  ASSERT_EQ(late_.size(), 1U);
+  EXPECT_EQ(late_[0].exit_code, 1);
+  EXPECT_EQ(late_[0].json["reason"], "queue_full");
+  add("r1");
+  begin("stop r1");
+  run_for(1s);
+  EXPECT_TRUE(robots_[0]->behaviour.stopped());
+}
+
 TEST_F(FreshStation, ANamedStopGoesOutBeforeTheRobotIsHeard) {
   add("r1").alive = false;
   start();
