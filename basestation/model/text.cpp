@@ -48,11 +48,9 @@ std::string motion_text(const Robot& robot) {
   return "moves without a goal";
 }
 
-bool was_let_go(const Robot& robot) { return robot.mode == "hold" && robot.reason == Reason::joystick_stale; }
-
 std::string standstill_text(const Robot& robot) {
   if (robot.reason == Reason::none || robot.moving_allowed) return {};
-  return was_let_go(robot) ? "driving by hand ended" : std::string(describe(robot.reason));
+  return std::string(describe(robot.reason));
 }
 
 std::string exploration_text(const ExplorationView& e) {

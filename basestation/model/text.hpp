@@ -19,8 +19,6 @@ std::string limits_text(const Robot& robot);
 /// What a robot does that drives to no goal: "driven by hand", "follows r1", "moves without a goal"; empty:
 /// it is stationary.
 std::string motion_text(const Robot& robot);
-/// Whether the robot holds because a drive by hand ended.
-bool was_let_go(const Robot& robot);
 /// Why the robot does not move, in words; empty: nothing keeps it.
 std::string standstill_text(const Robot& robot);
 /// What it explored: "exploring, 120 m3, about 40%, 3 frontiers left, 0 out of reach".

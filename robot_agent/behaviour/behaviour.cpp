@@ -362,9 +362,11 @@ void Behaviour::fall(const ModeRow& from, Reason reason) {
   if (reason == Reason::stopped) return;  // The stopping operator was already notified.
   const std::string text = std::string(from.name) + " ended: " + std::string(describe(reason));
   const bool stale = reason == Reason::joystick_stale;
-  if (stale &&
-      stick_.centred())  // The last sample was centred: the stick was released, and the robot did not move.
+  // The last sample was centred: the stick was released, and the robot did not move.
+  if (stale && stick_.centred()) {
+    fell_because_ = Reason::none;
     return outputs_.tell_holder({{}, Severity::info, "mode_changed", reason, text});
+  }
   outputs_.tell_holder({{}, Severity::warning, stale ? "joystick_lost" : "mode_changed", reason, text});
 }
 

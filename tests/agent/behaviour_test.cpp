@@ -173,6 +173,8 @@ TEST_F(BehaviourTest, LettingGoOfACentredStickIsNoWarning) {
   EXPECT_EQ(mode(), "hold");
   EXPECT_THAT(codes(), testing::ElementsAre("mode_changed"));
   EXPECT_EQ(told.back().severity, Severity::info);
+  EXPECT_EQ(told.back().reason, Reason::joystick_stale);
+  EXPECT_EQ(behaviour.view().reason, Reason::none) << "the robot misses no stick";
 }
 
 TEST_F(BehaviourTest, SilentStickIsZeroAfter300msAndHoldAfterOneSecond) {

@@ -96,12 +96,13 @@ TEST(Card, ARobotThatMovesIsNotReady) {
   EXPECT_EQ(card_of(moving, 1, 0.0, 1.0).detail, "moves without a goal");
 }
 
-TEST(Card, ARobotThatWasLetGoMissesNoStick) {
-  station::Robot let_go = mine(robot("r1", 0, 0));
-  let_go.reason = Reason::joystick_stale;  // Why it fell to hold.
-  EXPECT_EQ(card_of(let_go, 1, 0.0, 1.0).detail, "driving by hand ended");
-  let_go.mode = "smart_joystick";
-  EXPECT_EQ(card_of(let_go, 1, 0.0, 1.0).detail, std::string(describe(Reason::joystick_stale)));
+TEST(Card, ARobotThatLostItsStickSaysSo) {
+  station::Robot lost = mine(robot("r1", 0, 0));
+  lost.reason = Reason::joystick_stale;
+  for (const char* mode : {"hold", "smart_joystick"}) {
+    lost.mode = mode;
+    EXPECT_EQ(card_of(lost, 1, 0.0, 1.0).detail, std::string(describe(Reason::joystick_stale))) << mode;
+  }
 }
 
 TEST(ActionBar, HasEveryPlaceAlwaysInTheSameOrder) {

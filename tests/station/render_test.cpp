@@ -109,7 +109,8 @@ TEST(Render, ARobotThatMovesIsNotReady) {
   world.robots[0].vx = 0.0F;
   world.robots[0].mode = "hold";
   world.robots[0].reason = Reason::joystick_stale;
-  EXPECT_THAT(text(render(world, {.selected = "r1"}, 24, 80, false)), HasSubstr("driving by hand ended"));
+  EXPECT_THAT(text(render(world, {.selected = "r1"}, 24, 80, false)),
+              HasSubstr("does not move: joystick_stale"));
 }
 
 TEST(Render, TheSelectedRobotStaysInView) {

@@ -159,9 +159,7 @@ void detail(Page& page, const World& world, const WatchState& state) {
   std::string troubles;
   for (const std::string& trouble : robot->troubles) troubles += trouble + "  ";
   if (!troubles.empty()) cells.push_back({troubles, kRed});
-  if (was_let_go(*robot) && robot->stops.empty())
-    cells.push_back({standstill_text(*robot) + "  "});
-  else if (robot->reason != Reason::none && robot->stops.empty())
+  if (robot->reason != Reason::none && robot->stops.empty())
     cells.push_back({"does not move: " + std::string(name(robot->reason)) + "  ", kYellow});
   std::string areas;
   for (const AreaView& area : robot->areas)
