@@ -378,7 +378,8 @@ bool Control::releaseKey(int key, int scan, bool repeated) {
   if (repeated) return false;
   const int place = place_of(key, scan);
   drive_.release_key(place);
-  keys_down_.remove(place);
+  // Without scan codes, a key that changed its character since its press is not known at its release.
+  if (!keys_down_.remove(place) && scan == 0 && !is_modifier(key)) forgetKeys();
   if (place == 0 || place != motion_place_) return false;
   motion_place_ = 0;
   press_slot(motion_slot_);
