@@ -33,6 +33,12 @@ TEST(Tables, AMatrixHasAPlaceForEachComponentOfAnyRobot) {
   EXPECT_EQ(table.cells[5].hint, "1 thread");
   EXPECT_TRUE(health_detail(report, world, "r1", "planner").mine);
   EXPECT_FALSE(health_detail(report, world, "r2", "map").mine);
+  EXPECT_THAT(health_detail(report, world, "r2", "map").text, HasSubstr("you do not hold the robot"));
+  for (const char* part : {"driver", "store"}) {
+    report.robots[0].components[0].name = part;
+    EXPECT_FALSE(health_detail(report, world, "r1", part).mine) << part << " cannot be restarted";
+    EXPECT_THAT(health_detail(report, world, "r1", part).text, HasSubstr("no command restarts it"));
+  }
   EXPECT_FALSE(health_detail(report, world, "r2", "planner").known);
   EXPECT_FALSE(health_detail(report, world, "r9", "map").known);
 }

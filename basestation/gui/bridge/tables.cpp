@@ -6,6 +6,7 @@
 
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/model/text.hpp"
+#include "core/command/vocabulary.hpp"
 
 namespace adit::gui {
 namespace {
@@ -126,13 +127,15 @@ HealthDetail health_detail(const station::HealthReport& report, const station::W
       mark(part, cell);
       const station::Robot* seen = world.robot(robot);
       out.known = true;
-      out.mine = seen && seen->mine;
+      const bool held = seen && seen->mine;
+      out.mine = held && command::is_component(component);
       out.automatic = part.automatic;
       out.title = robot + " " + component + ": " + cell.text;
       out.text = cell.hint.empty() ? "never restarted" : cell.hint;
       if (part.hung > 0) out.text += " left behind";
       if (part.silent_for > 1.0F) out.text += ", silent for " + age_text(part.silent_for);
       if (!part.text.empty()) out.text += " — " + part.text;
+      if (!out.mine) out.text += held ? " — no command restarts it" : " — you do not hold the robot";
       return out;
     }
   }

@@ -39,7 +39,7 @@ HealthTable health_table(const station::HealthReport& report, const station::Wor
 struct HealthDetail {
   std::string title{};  ///< "r3 planner: FAILED".
   std::string text{};   ///< Why it failed, restarts, threads that it left behind.
-  bool mine{};          ///< The operator holds the robot, so that he may restart its components.
+  bool mine{};          ///< The operator holds the robot, and a command restarts the component.
   bool automatic{};
   bool known{};
 };

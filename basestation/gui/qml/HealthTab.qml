@@ -93,7 +93,7 @@ Item {
             height: 10 * Theme.mm
             wrapMode: Text.Wrap
             maximumLineCount: 2
-            text: tab.state_.chosenText + (tab.state_.chosenTitle === "" || tab.state_.chosenMine ? "" : " — you do not hold the robot")
+            text: tab.state_.chosenText
         }
         HoldButton {
             id: policy
