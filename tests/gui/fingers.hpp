@@ -54,7 +54,7 @@ class Fingers : public testing::Test {
   QQuickItem* item(const QString& name) {
     QQuickItem* found = nullptr;
     const auto find = [&] { return (found = find_item(window(), name)) != nullptr; };
-    (void)QTest::qWaitFor(find, 3000);  // Lists make their items when they are laid out.
+    (void)QTest::qWaitFor(find, 30'000);  // Lists make their items when they are laid out.
     EXPECT_NE(found, nullptr) << name.toStdString();
     return found;
   }

@@ -31,11 +31,14 @@ class ManyRobots : public Window {
   }
   /// Presses on a view of the map until it shows the place, or until the ring is full.
   void press_map(GestureArea& view, const QPoint& at, bool held) {
+    const auto clock = view.pressed_for;
+    if (!held) view.pressed_for = [] { return qint64{GestureArea::kLongPress}; };
     finger_down(at);
-    EXPECT_TRUE(QTest::qWaitFor([&] { return view.aims(); }));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return view.aims(); }, 30'000));
     if (held) QTest::qWait(kHeldMs);
     if (held) picture("many_robots");
     finger_up(at);
+    view.pressed_for = clock;
     settle();
   }
   QPoint free_place() { return on_map(12, 0.5); }
@@ -123,7 +126,7 @@ TEST_F(ManyRobots, AnAreaForThemIsHeld) {
   EXPECT_THAT(sink.lines, IsEmpty());
   const QPoint at = middle("area_keep_out");
   finger_down(at);
-  EXPECT_TRUE(QTest::qWaitFor([&] { return !sink.lines.empty(); }, 3000));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !sink.lines.empty(); }, 30'000));
   finger_up(at);
   EXPECT_THAT(sink.lines, SizeIs(1));
 }
@@ -136,7 +139,7 @@ TEST_F(ManyRobots, ALineThatIsComposedByTouchIsHeldAndEnterConfirmsATypedOne) {
   EXPECT_THAT(sink.lines, IsEmpty());
   const QPoint at = middle("commandRun");
   finger_down(at);
-  EXPECT_TRUE(QTest::qWaitFor([&] { return !sink.lines.empty(); }, 3000));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return !sink.lines.empty(); }, 30'000));
   finger_up(at);
   control.command_line()->set_line("home r1 r4 r6 r9");
   settle();

@@ -56,7 +56,7 @@ class TaskWindow : public Window {
     move_to(name);
     result_.seconds += KeystrokeModel::kHold;
     finger_down(middle(name));
-    (void)QTest::qWaitFor(until, 3000);
+    (void)QTest::qWaitFor(until, 30'000);
     finger_up(middle(name));
     settle();
   }

@@ -5,6 +5,7 @@
 #include <QElapsedTimer>
 #include <QQuickItem>
 #include <algorithm>
+#include <functional>
 
 namespace adit::gui {
 
@@ -24,6 +25,8 @@ class GestureArea : public QQuickItem {
   explicit GestureArea(QQuickItem* parent = nullptr);
   /// A place is shown that would be sent if the finger was lifted.
   bool aims() const { return state_ == State::aimed; }
+  /// Time since the press began, ms. A test may replace it.
+  std::function<qint64()> pressed_for{[this] { return since_.elapsed(); }};
 
  protected:
   /// Whether a tap means a place to drive to.
@@ -47,7 +50,7 @@ class GestureArea : public QQuickItem {
   /// Takes back what a finger that is down would do when it is lifted.
   void drop_press();
   /// How much of kHold the present press has lasted, [0, 1].
-  double held_share() const { return std::min(1.0, static_cast<double>(since_.elapsed()) / kHold); }
+  double held_share() const { return std::min(1.0, static_cast<double>(pressed_for()) / kHold); }
   const QPointF& pressed_at() const { return start_; }
   bool pinching() const { return state_ == State::pinching; }
   /// The mouse drags with its right button, or with the shift key.
