@@ -76,7 +76,7 @@ class Play {
   int result() const {
     if (refused_ + unanswered_ == 0) return kExitDone;
     if (!options_.json)
-      std::fprintf(stderr, "of %zu commands %zu were refused, and %zu had no answer\n", ended_, refused_,
+      std::fprintf(stderr, "commands: %zu, refused: %zu, without an answer: %zu\n", ended_, refused_,
                    unanswered_);
     return refused_ > 0 ? kExitRefused : kExitNoAnswer;
   }

@@ -56,6 +56,7 @@ TEST(Card, BlockedWaitingAndBrokenRobotsNeedTheOperator) {
   EXPECT_EQ(card("r6").headline, "EXPLORE WAITS");
   EXPECT_EQ(card("r6").detail, std::string(describe(Reason::terrain_stale)));
   EXPECT_EQ(card("r9").detail, "planner hung");
+  EXPECT_EQ(card("r9").short_detail, "one component in trouble");
   for (const char* name : {"r2", "r4", "r5", "r6", "r9"}) EXPECT_TRUE(card(name).needs_operator) << name;
 }
 

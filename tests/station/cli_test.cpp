@@ -306,7 +306,7 @@ TEST_F(Cli, AScriptPlaysTheOperatorsLines) {
   EXPECT_EQ(some.exit_code, 1) << "every command for r2 was refused";
   EXPECT_THAT(some.out, HasSubstr("r2: "));
   EXPECT_THAT(some.out, HasSubstr("op1> list"));
-  EXPECT_THAT(some.err, HasSubstr("of 2 commands 1 were refused"));
+  EXPECT_THAT(some.err, HasSubstr("commands: 2, refused: 1, without an answer: 0"));
   const std::string bad = folder_.write("bad.yaml", "script:\n  - {at: 1, by: op1, do: tkae r1}\n");
   const Finished refused = run({"run", bad});
   EXPECT_EQ(refused.exit_code, 2);

@@ -76,7 +76,8 @@ Words detail(const Card& card, const Robot& robot, double age) {
   if (robot.stopped) return {"stopped"};
   if (!robot.troubles.empty())
     return {command::joined(robot.troubles, ""),
-            std::to_string(robot.troubles.size()) + " components in trouble"};
+            robot.troubles.size() == 1 ? "one component in trouble"
+                                       : std::to_string(robot.troubles.size()) + " components in trouble"};
   if (const std::string why = station::standstill_text(robot); !why.empty())
     return {why, spaced(std::string(name(robot.reason)))};
   if (!robot.yields_to.empty()) return {"makes way for " + robot.yields_to, "makes way for a robot"};
