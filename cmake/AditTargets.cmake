@@ -7,6 +7,7 @@ function(adit_library_headers target)
   if(NOT TARGET adit_library_pch)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/library_pch.cpp CONTENT "\n")
     add_library(adit_library_pch STATIC ${PROJECT_BINARY_DIR}/library_pch.cpp)
+    set_target_properties(adit_library_pch PROPERTIES UNITY_BUILD OFF)
     target_link_libraries(adit_library_pch PRIVATE Eigen3::Eigen Threads::Threads)
     target_precompile_headers(adit_library_pch PRIVATE
       <Eigen/Dense> <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <deque> <filesystem>
@@ -92,7 +93,7 @@ function(adit_test_headers target optimised)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_pch.cpp CONTENT "int main() { return 0; }\n")
     # A program, as the tests are: the header must be compiled with the same -fPIE.
     add_executable(${pch} ${PROJECT_BINARY_DIR}/test_pch.cpp)
-    set_target_properties(${pch} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+    set_target_properties(${pch} PROPERTIES UNITY_BUILD OFF RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
     target_link_libraries(${pch} PRIVATE GTest::gmock Eigen3::Eigen Threads::Threads)
     target_compile_options(${pch} PRIVATE ${level})
     target_precompile_headers(${pch} PRIVATE
