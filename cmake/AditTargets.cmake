@@ -21,7 +21,8 @@ endfunction()
 
 # Compiles the sources of a target SIZE at a time, where the preset asks for it (CMAKE_UNITY_BUILD). CMake's own files for that
 # include each source by its absolute path, so ccache has to preprocess every one again in another clone; these include it by
-# its path in the source tree, and are the same everywhere. Sources that have compiler options of their own stay alone.
+# its path in the source tree, and are the same everywhere. Sources that have compiler options of their own stay alone, and so
+# do generated ones: without them among the target's sources, nothing would generate them.
 function(adit_batch target size)
   if(NOT CMAKE_UNITY_BUILD)
     return()
@@ -33,9 +34,10 @@ function(adit_batch target size)
   foreach(source ${sources})
     get_source_file_property(options ${source} COMPILE_OPTIONS)
     get_source_file_property(definitions ${source} COMPILE_DEFINITIONS)
+    get_source_file_property(generated ${source} GENERATED)
     get_filename_component(path ${source} ABSOLUTE)
     file(RELATIVE_PATH path ${PROJECT_SOURCE_DIR} ${path})
-    if(NOT path MATCHES "\\.cpp$" OR options OR definitions)
+    if(NOT path MATCHES "\\.cpp$" OR options OR definitions OR generated)
       list(APPEND batches ${source})
       continue()
     endif()
