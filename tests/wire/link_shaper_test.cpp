@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "core/wire/fastdds/filtering_transport.hpp"
+#include "core/wire/fastdds/rtps_guard.hpp"
 #include "core/wire/fastdds/rtps_peek.hpp"
 #include "tests/live/process.hpp"
 
@@ -125,6 +126,35 @@ TEST(RtpsPeek, StatisticsAreCutFromFastDdsMessagesAlone) {
   m[7] = 16;  // another vendor's
   EXPECT_EQ(without_statistics(m), m.size());
   for (std::size_t n = 0; n < 80; ++n) EXPECT_EQ(without_statistics(std::span(m).first(n)), n);
+}
+
+TEST(RtpsGuard, RemovesSubmessagesOfVendorsWhereverTheyAre) {
+  const auto passed = [](const Bytes& m) {
+    Bytes copy;
+    const auto result = without_vendor_kinds(m, copy);
+    return Bytes(result.begin(), result.end());
+  };
+  const Bytes first = heartbeat(1, 5, 1), second = heartbeat(2, 6, 2), time{0x09}, vendor{0xff, 1, 2, 3, 4};
+  const Bytes both = message({first, second});
+  EXPECT_EQ(passed(both), both);
+  EXPECT_EQ(passed(message({first, second, statistics()})), both);
+  EXPECT_EQ(passed(message({statistics(), first, second})), both);
+  EXPECT_EQ(passed(message({vendor, first, statistics(), second, vendor})), both);
+  // An empty timestamp is not the last submessage, as an empty one of other kinds is.
+  EXPECT_EQ(passed(message({time, statistics(), first})), message({time, first}));
+  EXPECT_EQ(passed(message({statistics()})), message({}));
+}
+
+TEST(RtpsGuard, DropsWhatParsersReadDifferently) {
+  Bytes copy;
+  const Bytes header = message({});
+  for (std::size_t n = 0; n < header.size(); ++n)
+    EXPECT_TRUE(without_vendor_kinds(std::span(header).first(n), copy).empty());
+  EXPECT_TRUE(without_vendor_kinds(message({Bytes(6, 0x07), heartbeat(1, 5, 1)}), copy).empty());
+  // Nothing is read beyond the end, and a truncated submessage is removed.
+  const Bytes cut = message({heartbeat(1, 5, 1), heartbeat(1, 6, 2)});
+  for (std::size_t n = 52; n < cut.size(); ++n)
+    EXPECT_EQ(without_vendor_kinds(std::span(cut).first(n), copy).size(), 52U);
 }
 
 TEST(HeartbeatFilter, LetsOneThatSaysNothingNewPassOnlySoOften) {

@@ -339,5 +339,40 @@ TEST(LiveWire, ClosesWhileSamplesAndCallbacksAreUnderWay) {
   }
 }
 
+// The library ends the process when a submessage of its vendor's statistics is not the last one of a
+// datagram.
+TEST(LiveWire, AForeignDatagramOfEightyEightBytesEndsNobody) {
+  LiveNet net;
+  const auto strand = net.strand("test");
+  const auto robot = net.join("robot"), station = net.join("station");
+  Seen<std::size_t> seen;
+  const auto reader = std::move(robot->make_reader(kPing, "", *strand, [&](auto bytes, const SampleInfo&) {
+                        seen.add(bytes.size());
+                        return true;
+                      })).value();
+  const auto writer = std::move(station->make_writer(kPing, "")).value();
+  ASSERT_TRUE(net.until([&] { return writer->matched() == 1; }));
+  std::vector<std::uint8_t> datagram(88);
+  const std::uint8_t header[]{'R', 'T', 'P', 'S', 2, 3, 1, 15};
+  std::copy(std::begin(header), std::end(header), datagram.begin());
+  datagram[20] = 0x80, datagram[21] = 1, datagram[22] = 56;
+  datagram[80] = 0x01, datagram[81] = 1, datagram[82] = 4;
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  for (std::uint32_t port = 7410; port < 7414; ++port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port + 250 * live::domain()));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    ASSERT_EQ(::sendto(fd, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&address),
+                       sizeof address),
+              static_cast<ssize_t>(datagram.size()));
+  }
+  ::close(fd);
+  const std::uint64_t before = robot->counters().total_in;
+  ASSERT_TRUE(writer->write(std::vector<std::uint8_t>{0, 1, 0, 0, 1, 2, 3, 4}).ok());
+  EXPECT_TRUE(net.until([&] { return seen.size() == 1; }));
+  EXPECT_GT(robot->counters().total_in, before);
+}
+
 }  // namespace
 }  // namespace adit::wire

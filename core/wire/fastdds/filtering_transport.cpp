@@ -9,6 +9,7 @@
 #include "core/wire/cost.hpp"
 #include "core/wire/fastdds/link_shaper.hpp"
 #include "core/wire/fastdds/ports.hpp"
+#include "core/wire/fastdds/rtps_guard.hpp"
 #include "core/wire/fastdds/rtps_peek.hpp"
 
 namespace adit::wire {
@@ -111,7 +112,11 @@ void FilteringTransport::receive(eprosima::fastdds::rtps::TransportReceiverInter
     if (context_->repeats) context_->repeats->wake();
     context_->discovery_gate.wait();
   }
-  next_receiver->OnDataReceived(receive_buffer, receive_buffer_size, local_locator, remote_locator);
+  std::vector<std::uint8_t> copy;
+  const auto message = without_vendor_kinds({receive_buffer, receive_buffer_size}, copy);
+  if (message.empty()) return;
+  next_receiver->OnDataReceived(message.data(), static_cast<std::uint32_t>(message.size()), local_locator,
+                                remote_locator);
 }
 
 }  // namespace adit::wire
