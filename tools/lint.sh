@@ -49,7 +49,7 @@ check_includes() {
       if (!(from in part)) next
       file = $0; sub(/^[^<"]*[<"]/, "", file); sub(/[>"].*/, "", file)
       split(file, parts, "/"); to = parts[1]
-      in_wire = FILENAME ~ /^core\/wire\//
+      in_wire = FILENAME ~ /^core\/wire\//; in_contract = FILENAME ~ /^core\/contract\//
       if (to in part && !allowed(from, to, file))
         printf "%s:%d: %s may not include %s\n", FILENAME, FNR, from, file
       if (file ~ /^Q[A-Z]|^Qt[A-Z].*\// && FILENAME !~ /^(basestation|bench|tests)\/gui\//)
@@ -57,9 +57,9 @@ check_includes() {
       if (file ~ /^\.\.?\//) printf "%s:%d: includes are written from the root\n", FILENAME, FNR
       if ((to == "fastdds" || to == "fastrtps" || to == "fastcdr") && !in_wire && from != "tests")
         printf "%s:%d: Fast DDS headers belong into core/wire/\n", FILENAME, FNR
-      if ((to == "adit" || file ~ /^(builtin_interfaces|std_msgs|geometry_msgs|nav_msgs|sensor_msgs|tf2_msgs)\//) && !in_wire &&
+      if ((to == "adit" || file ~ /^(builtin_interfaces|std_msgs|geometry_msgs|nav_msgs|sensor_msgs|tf2_msgs)\//) && !in_wire && !in_contract &&
           from !~ /^(robot_agent|basestation|sim|tests|bench|examples)$/)
-        printf "%s:%d: generated types belong into core/wire, robot_agent, basestation and sim\n", FILENAME, FNR
+        printf "%s:%d: generated types belong into core/contract, core/wire, robot_agent, basestation and sim\n", FILENAME, FNR
     }'
 }
 
