@@ -28,6 +28,9 @@ struct Epoch {
 radio::Epoch encode(const Epoch& epoch);
 Epoch decode(const radio::Epoch& sample);
 
+/// Maximum distance of goals and robot poses from the map's origin, m.
+inline constexpr double kFarthestPlace = 10'000.0;
+
 inline constexpr std::size_t kMaxName = 32;   ///< Of names, modes, codes and services, bytes.
 inline constexpr std::size_t kMaxText = 240;  ///< Of a received text, bytes.
 

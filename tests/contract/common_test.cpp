@@ -3,13 +3,9 @@
 
 #include <gmock/gmock.h>
 
-#include "adit/common.h"
 #include "tests/contract/random_samples.hpp"
 
 namespace adit::contract {
-
-static void randomize(RandomSamples& random, radio::Epoch& out) { random.any(out.start(), out.counter()); }
-
 namespace {
 
 TEST(ContractCommon, AnEpochComesBackAsItWas) {

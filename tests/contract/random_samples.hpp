@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "adit/common.h"
+#include "core/command/words.hpp"
 #include "core/time/random.hpp"
 #include "core/wire/typed.hpp"
 
@@ -98,6 +100,13 @@ class RandomSamples {
   Random random_;
 };
 
+inline void randomize(RandomSamples& random, radio::Epoch& out) { random.any(out.start(), out.counter()); }
+
+/// Whether a text is printable ASCII of at most `max` bytes.
+inline bool is_clean(const std::string& text, std::size_t max) {
+  return text.size() <= max && command::clean(text, max) == text;
+}
+
 /// The sample after serialisation and deserialisation.
 template <class T>
 T through_cdr(const T& sample) {
@@ -106,6 +115,13 @@ T through_cdr(const T& sample) {
   T out;
   EXPECT_TRUE(wire::decode(bytes, out));
   return out;
+}
+
+/// The same, of a message that must fit its topic.
+template <class T>
+T through_cdr(const T& sample, const wire::TopicInfo& topic) {
+  EXPECT_LE(4 + T::getCdrSerializedSize(sample), topic.max_bytes);
+  return through_cdr(sample);
 }
 
 inline constexpr std::uint64_t kSeeds = 300;
