@@ -339,13 +339,13 @@ void Commands::cancel(std::uint64_t handle) {
 }
 
 void Commands::hear(const radio::Acknowledgement& sample, const wire::SampleInfo& info) {
-  if (sample.station() != params_.name || sample.station_id() != params_.id) return;
+  const auto ack = contract::decode(sample);
+  if (!ack || ack->station != params_.name || ack->station_id != params_.id) return;
   // Another robot of that name also answers.
-  if (!fleet_.speaks_for(sample.robot(), info.sender)) return;
-  fleet_.learn_authority(sample.robot(), sample.holder(), {sample.epoch().start(), sample.epoch().counter()});
-  if (sample.seq() != 0) return sender_.hear(sample, info);
-  flows_.stream_refused(sample.robot(), static_cast<Reason>(sample.reason()),
-                        command::clean(sample.text(), 240));
+  if (!fleet_.speaks_for(ack->robot, info.sender)) return;
+  fleet_.learn_authority(ack->robot, ack->holder, ack->epoch);
+  if (ack->seq != 0) return sender_.hear(*ack);
+  flows_.stream_refused(ack->robot, ack->reason, ack->text);
 }
 
 void Commands::tick() {

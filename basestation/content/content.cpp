@@ -6,7 +6,7 @@
 
 #include "adit/bulk.h"
 #include "core/command/words.hpp"
-#include "core/transfer/receipt_message.hpp"
+#include "core/contract/bulk.hpp"
 #include "core/wire/typed.hpp"
 #include "perception/map/voxel_image.hpp"
 
@@ -16,13 +16,6 @@ namespace {
 constexpr Duration kCarrierHeard{std::chrono::seconds(30)};
 constexpr Duration kLookHolds{std::chrono::seconds(5)};  // Front ends say every second what they show.
 constexpr std::uint64_t kStartSalt = 1;                  // Beside the sequence of the phases.
-
-radio::BulkDigest to_radio(const transfer::ContentDigest& digest) {
-  radio::BulkDigest out;
-  out.robot(digest.robot);
-  out.parts(digest.parts);
-  return out;
-}
 
 }  // namespace
 
@@ -70,10 +63,9 @@ Result<void> Content::open() {
 void Content::take(const radio::BulkPiece& sample, const wire::SampleInfo& info) {
   // Only the robot itself adds to its map and findings: Fleet::speaks_for would also take a participant that
   // is not known yet.
-  const RobotView* robot = fleet_.robot(sample.robot());
-  if (!presence_.up() || !robot || robot->participant != info.sender) return;
-  pieces_.take(
-      {sample.robot(), sample.session(), sample.id(), sample.kind(), sample.waiting(), sample.data()});
+  const auto piece = contract::decode(sample);
+  const RobotView* robot = piece ? fleet_.robot(piece->robot) : nullptr;
+  if (presence_.up() && robot && robot->participant == info.sender) pieces_.take(*piece);
 }
 
 void Content::acknowledge() {
@@ -82,21 +74,17 @@ void Content::acknowledge() {
   const double bandwidth = link ? link->bandwidth : 0.0;
   const auto receipts = pieces_.due(bandwidth);
   if (!receipts) return;
-  radio::BulkAck ack;
-  ack.station(params_.name);
-  ack.station_id(params_.id);
-  ack.start(map_.start());
-  for (const auto& [robot, receipt] : *receipts)
-    ack.receipts().push_back(transfer::to_message<radio::BulkReceipt>(robot, receipt));
+  contract::BulkAck ack{
+      .station = params_.name, .station_id = params_.id, .start = map_.start(), .receipts = *receipts};
   if (look_ && strand_.now() - looked_ < kLookHolds)
-    ack.look({static_cast<float>(look_->x), static_cast<float>(look_->y), static_cast<float>(look_->radius)});
-  if (const auto digests = carrier_heard()
-                               ? digests_.due(map_.chunks(), receipts->size(), bandwidth, strand_.now())
-                               : std::nullopt) {
-    ack.all_digests(digests->all);
-    for (const transfer::ContentDigest& digest : digests->list) ack.digests().push_back(to_radio(digest));
-  }
-  (void)receipts_->write(ack);  // Best effort: a receipt has what those before it had.
+    ack.look = {static_cast<float>(look_->x), static_cast<float>(look_->y),
+                static_cast<float>(look_->radius)};
+  if (carrier_heard())
+    if (auto digests = digests_.due(map_.chunks(), receipts->size(), bandwidth, strand_.now())) {
+      ack.all_digests = digests->all;
+      ack.digests = std::move(digests->list);
+    }
+  (void)receipts_->write(encode(ack));  // Best effort: a receipt has what those before it had.
 }
 
 bool Content::carrier_heard() const {
@@ -104,8 +92,7 @@ bool Content::carrier_heard() const {
   return std::any_of(robots.begin(), robots.end(), [this](const auto& entry) {
     const RobotView& robot = entry.second;
     return strand_.now() - robot.last_heard < kCarrierHeard &&
-           std::find(robot.services.begin(), robot.services.end(), wire::topics::kCarryService) !=
-               robot.services.end();
+           contract::offers(robot.services, contract::service::kCarryMap);
   });
 }
 

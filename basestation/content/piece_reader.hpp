@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <span>
 #include <string>
 
+#include "core/contract/bulk.hpp"
 #include "core/result/result.hpp"
 #include "core/transfer/receiver.hpp"
 
@@ -16,13 +16,7 @@ namespace adit::station {
 /// are heard, pieces of further ones are not acknowledged.
 class PieceReader {
  public:
-  struct Piece {
-    std::string robot{};  ///< A robot whose participant sent it.
-    std::uint32_t session{}, id{};
-    std::uint8_t kind{};  ///< Of transfer::Kind, or of a later release.
-    std::uint32_t waiting{};
-    std::span<const std::uint8_t> data{};
-  };
+  using Piece = contract::BulkPiece;
   /// Acknowledges the piece: called once, now or later, when its content is stored, or will never be
   /// understood. If it is not called, the content comes again.
   using Stored = std::function<void()>;

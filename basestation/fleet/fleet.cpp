@@ -11,8 +11,14 @@
 #include "adit/robot.h"
 #include "core/command/vocabulary.hpp"
 #include "core/command/words.hpp"
+#include "core/contract/authority.hpp"
+#include "core/contract/discovery.hpp"
 
 namespace adit::station {
+
+using contract::AgentKind;
+using contract::Party;
+
 namespace {
 
 using namespace std::chrono_literals;
@@ -25,15 +31,6 @@ constexpr Duration kOldestNotice = 240h;  // Maximum age that a robot may claim.
 /// Validates an amount in a sample; 0 for an invalid value.
 float amount(float value) { return value >= 0.0F && value < 1e12F ? value : 0.0F; }
 double number(float value) { return static_cast<double>(amount(value)); }
-
-std::vector<std::string> cleaned(const std::vector<std::string>& words, std::size_t max_words) {
-  std::vector<std::string> out;
-  for (const std::string& word : words) {
-    if (out.size() == max_words) break;
-    out.push_back(command::clean(word, kNameLimit));
-  }
-  return out;
-}
 
 /// An area as a robot sent it; nothing if it is malformed.
 std::optional<AreaView> view_of(const radio::Area& area) {
@@ -56,9 +53,10 @@ void set_owner(RobotView& robot, const std::string& own_name, const Id& own_id) 
   robot.mine = robot.holder == own_name && robot.holder_id == own_id;
   robot.stops.clear();
   robot.stopped_by_holder = false;
-  for (const StopLatch& latch : robot.latches) {
-    robot.stops.push_back(latch.station);
-    if (latch.station == robot.holder && latch.station_id == robot.holder_id) robot.stopped_by_holder = true;
+  const Party holder{robot.holder, robot.holder_id};
+  for (const Party& latch : robot.latches) {
+    robot.stops.push_back(latch.name);
+    if (latch == holder) robot.stopped_by_holder = true;
   }
 }
 
@@ -101,51 +99,50 @@ RobotView* Fleet::touch(const std::string& name, const wire::SampleInfo& info) {
 }
 
 void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info) {
-  if (sample.kind() == radio::AGENT_STATION) {
-    radio::Presence presence;
-    presence.name(sample.name());
-    presence.kind(radio::AGENT_STATION);
-    presence.id(sample.id());
-    hear(presence, info);
-    const auto station = stations_.find(sample.name());
-    if (station == stations_.end()) return;
-    station->second.place.reset();
-    const bool finite = std::all_of(sample.place().begin(), sample.place().end(),
-                                    [](float metres) { return std::isfinite(metres); });
-    if (sample.placed() && finite) station->second.place = sample.place();
+  const auto said = contract::decode(sample);
+  if (!said) return (void)++ignored_;
+  if (said->kind == AgentKind::station) {
+    hear(contract::Presence{said->name, said->kind, said->id, said->protocol}, info);
+    const auto station = stations_.find(said->name);
+    if (station != stations_.end()) station->second.place = said->place;
     return;
   }
-  RobotView* robot = touch(sample.name(), info);
+  RobotView* robot = touch(said->name, info);
   if (!robot) return;
   robot->described = true;
-  robot->platform = command::clean(sample.platform(), kNameLimit);
-  robot->software = command::clean(sample.software(), kNameLimit);
-  robot->protocol = sample.protocol();
-  robot->max_speed = sample.max_speed();
-  robot->max_turn = sample.max_turn();
-  robot->max_acceleration = amount(sample.max_acceleration());
-  robot->holonomic = sample.holonomic();
-  robot->size = {amount(sample.length()), amount(sample.width()), amount(sample.height())};
-  robot->max_step = amount(sample.step());
-  robot->max_slope = amount(sample.slope());
-  robot->climbs_stairs = sample.stairs();
-  robot->modes = cleaned(sample.modes(), 32);
-  robot->sensors = cleaned(sample.sensors(), 16);
-  robot->services = cleaned(sample.services(), 32);
+  robot->platform = said->platform;
+  robot->software = said->software;
+  robot->protocol = said->protocol;
+  robot->max_speed = said->max_speed;
+  robot->max_turn = said->max_turn;
+  robot->max_acceleration = said->max_acceleration;
+  robot->holonomic = said->holonomic;
+  robot->size = {said->length, said->width, said->height};
+  robot->max_step = said->max_step;
+  robot->max_slope = said->max_slope;
+  robot->climbs_stairs = said->stairs;
+  robot->modes = said->modes;
+  robot->sensors = said->sensors;
+  robot->services = said->services;
 }
 
 void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
-  if (command::valid_name(sample.name()) && sample.name() != own_name_ &&
-      speaks_for(sample.name(), info.sender))
-    links_.heard(sample.name(), sample.seq(), info.received);
-  if (sample.kind() != radio::AGENT_STATION) {
+  const auto presence = contract::decode(sample);
+  if (!presence) return (void)++ignored_;
+  hear(*presence, info);
+}
+
+void Fleet::hear(const contract::Presence& presence, const wire::SampleInfo& info) {
+  if (presence.name != own_name_ && speaks_for(presence.name, info.sender))
+    links_.heard(presence.name, presence.seq, info.received);
+  if (presence.kind == AgentKind::robot) {
     // RobotState has more content, but on a full link it is as rare as this.
-    const auto robot = robots_.find(sample.name());
+    const auto robot = robots_.find(presence.name);
     if (robot != robots_.end() && robot->second.participant == info.sender)
       robot->second.last_sign = robot->second.spoke = info.received;
     return;
   }
-  if (sample.name() == own_name_ && sample.id() != own_id_) {
+  if (presence.name == own_name_ && presence.id != own_id_) {
     // Robots will refuse one of the two stations: its operator must choose another name.
     if (!clashed_ || info.received - last_clash_ > kForgetAfter)
       say({.level = Level::warning,
@@ -157,16 +154,12 @@ void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
     last_clash_ = info.received;
     return;
   }
-  if (sample.name() == own_name_) return;
-  if (!command::valid_name(sample.name()) ||
-      (!stations_.contains(sample.name()) && stations_.size() == kMaxStations)) {
-    ++ignored_;
-    return;
-  }
-  StationView& station = stations_[sample.name()];
-  if (station.id != sample.id()) station.place.reset();  // Another station has that name.
-  station.name = sample.name();
-  station.id = sample.id();
+  if (presence.name == own_name_) return;
+  if (!stations_.contains(presence.name) && stations_.size() == kMaxStations) return (void)++ignored_;
+  StationView& station = stations_[presence.name];
+  if (station.id != presence.id) station.place.reset();  // Another station has that name.
+  station.name = presence.name;
+  station.id = presence.id;
   station.participant = info.sender;
   station.last_heard = info.received;
 }
@@ -218,22 +211,22 @@ void Fleet::hear(const radio::Route& sample, const wire::SampleInfo& info) {
 }
 
 void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& info) {
-  RobotView* robot = touch(sample.robot(), info);
+  const auto status = contract::decode(sample);
+  if (!status) return (void)++ignored_;
+  RobotView* robot = touch(status->robot, info);
   if (!robot) return;
-  const Epoch epoch{sample.epoch().start(), sample.epoch().counter()};
   // An acknowledgement can be newer than a status that arrives later.
-  if (robot->owned && robot->epoch.start == epoch.start && epoch.counter < robot->epoch.counter) return;
+  if (robot->owned && robot->epoch.start == status->epoch.start &&
+      status->epoch.counter < robot->epoch.counter)
+    return;
   robot->owned = true;
-  robot->epoch = epoch;
-  robot->holder = command::clean(sample.holder(), kNameLimit);
-  robot->holder_id = sample.holder_id();
-  robot->locked = sample.locked();
-  robot->lease_left = sample.lock_lease_left();
-  robot->latches.clear();
-  for (const auto& stop : sample.stops()) {
-    if (robot->latches.size() == 17) break;
-    robot->latches.push_back({command::clean(stop.station(), kNameLimit), stop.station_id()});
-  }
+  robot->epoch = status->epoch;
+  const Party holder = status->holder.value_or(Party{});
+  robot->holder = holder.name;
+  robot->holder_id = holder.id;
+  robot->locked = status->locked;
+  robot->lease_left = status->lease_left;
+  robot->latches = status->stops;
   set_owner(*robot, own_name_, own_id_);
 }
 
@@ -371,7 +364,7 @@ void Fleet::learn_authority(const std::string& robot, const std::string& holder,
   view.owned = true;
   view.epoch = epoch;
   if (!changed) return;
-  view.holder = command::clean(holder, kNameLimit);
+  view.holder = holder;
   // The acknowledgement has only the holder's name; the next status has its id.
   view.holder_id = holder == own_name_ ? own_id_ : Id{};
   view.locked = false;  // Every change of holder ends a lock.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "basestation/fleet/views.hpp"
+#include "core/contract/discovery.hpp"
 #include "core/exec/executor.hpp"
 #include "core/wire/link/peer_meter.hpp"
 #include "core/wire/topics.hpp"
@@ -33,7 +34,7 @@ class Fleet {
   void hear(const radio::Notification& sample, const wire::SampleInfo& info);
   void hear(const radio::Health& sample, const wire::SampleInfo& info);
   void hear(const radio::LinkReport& sample, const wire::SampleInfo& info);
-  /// Updates holder and epoch from an acknowledgement.
+  /// Updates holder and epoch from an acknowledgement; an empty holder: none.
   void learn_authority(const std::string& robot, const std::string& holder, const Epoch& epoch);
   /// Sets the position of this station, map frame, m.
   void stand_at(const std::array<float, 3>& place) { own_place_ = place; }
@@ -79,6 +80,7 @@ class Fleet {
   };
   static constexpr std::size_t kMaxNamesakes = 16;
 
+  void hear(const contract::Presence& presence, const wire::SampleInfo& info);
   RobotView* touch(const std::string& name, const wire::SampleInfo& info);
   /// Returns the view for a sample of a participant that is not the shown one.
   RobotView* touch_namesake(RobotView& shown, const wire::SampleInfo& info);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Selects which of several robots with one name is shown and commanded. The robots decide who gives way
 // (robot_agent/discovery/namesakes.hpp); a station follows them.
-#include <algorithm>
-
 #include "basestation/fleet/fleet.hpp"
 
 namespace adit::station {
@@ -16,10 +14,7 @@ constexpr Duration kGrace = 1s;       // Samples of an agent that ended may arri
 constexpr Duration kSilent = 3s;      // After this silence a rejected participant may get the name.
 constexpr Duration kForgotten = 60s;  // After this silence a robot that gives way may get the name.
 
-bool gives_way(const RobotView& robot) {
-  return std::any_of(robot.services.begin(), robot.services.end(),
-                     [](const std::string& word) { return word.starts_with("name_taken"); });
-}
+bool gives_way(const RobotView& robot) { return contract::claim_of(robot.services).has_value(); }
 
 }  // namespace
 

@@ -13,7 +13,6 @@ namespace adit::station {
 using namespace std::chrono_literals;
 
 namespace {
-constexpr std::uint16_t kProtocol = 1;
 constexpr Duration kReportPeriod = 2s;
 constexpr std::size_t kMaxReportTopics = 16;
 constexpr std::size_t kMaxTimers = 31;  // Then further peers hear the periodic announcement only.
@@ -48,20 +47,18 @@ Result<void> Presence::open() {
 }
 
 Result<void> Presence::start() {
-  radio::Capabilities self;
-  self.name(params_.name);
-  self.kind(radio::AGENT_STATION);
-  self.id(params_.id);
-  self.protocol(kProtocol);
-  self.software(params_.software);
+  const contract::Capabilities self{.name = params_.name,
+                                    .kind = contract::AgentKind::station,
+                                    .id = params_.id,
+                                    .protocol = contract::kProtocolVersion,
+                                    .software = params_.software,
+                                    .place = params_.place};
   if (params_.place) {
-    self.placed(true);
-    self.place(*params_.place);
     fleet_.stand_at(*params_.place);
     const auto& [x, y, z] = *params_.place;
     radio_.set_place(radio_.id(), {x, y, z});
   }
-  if (auto written = topics_->capabilities.write(self); !written) return written.error();
+  if (auto written = topics_->capabilities.write(encode(self)); !written) return written.error();
   announce();
 
   // The participant may store this handler longer than the station exists.
@@ -89,14 +86,10 @@ void Presence::go_up() {
 
 void Presence::announce() {
   if (!up_) return;
-  radio::Presence presence;
-  presence.name(params_.name);
-  presence.kind(radio::AGENT_STATION);
-  presence.id(params_.id);
-  presence.protocol(kProtocol);
-  presence.seq(++presence_seq_);
-  fleet_.said_present(presence_seq_, strand_.now());
-  (void)topics_->presence.write(presence);  // The next one follows within 1 s.
+  fleet_.said_present(++presence_seq_, strand_.now());
+  // The next one follows within 1 s.
+  (void)topics_->presence.write(encode(contract::Presence{
+      params_.name, contract::AgentKind::station, params_.id, contract::kProtocolVersion, presence_seq_}));
 }
 
 void Presence::announce_often() {

@@ -11,18 +11,13 @@
 #include "basestation/model/network.hpp"
 #include "basestation/model/notice.hpp"
 #include "basestation/model/robot.hpp"
+#include "core/contract/authority.hpp"
 #include "core/time/time.hpp"
 #include "core/wire/participant.hpp"
 
 namespace adit::station {
 
-using Id = std::array<std::uint8_t, 16>;
-
-/// One latch of the software stop.
-struct StopLatch {
-  std::string station{};
-  Id station_id{};
-};
+using contract::Id;
 
 /// The state of one robot as received: what front ends receive of it, and what only the station needs.
 /// `age`, `troubles` and `stopped` are complete after described().
@@ -40,7 +35,7 @@ struct RobotView : Robot {
 
   bool owned{false};  ///< An AuthorityStatus was received.
   Id holder_id{};
-  std::vector<StopLatch> latches{};  ///< The stops, with the stations' identities.
+  std::vector<contract::Party> latches{};  ///< The stops, with the stations' identities.
 
   std::uint64_t behaviour_count{};  ///< Number of BehaviourStates received.
 

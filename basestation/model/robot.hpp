@@ -8,17 +8,14 @@
 #include <vector>
 
 #include "core/config/perception_level.hpp"
+#include "core/contract/common.hpp"
 #include "core/result/reason.hpp"
 
 /// Plain values that a station reports to its front ends. Positions are in the map frame (m, rad), speeds in
 /// the body frame (m/s, rad/s), ages in s.
 namespace adit::station {
 
-struct Epoch {
-  std::uint64_t start{};
-  std::uint32_t counter{};
-  bool operator==(const Epoch&) const = default;
-};
+using contract::Epoch;
 
 /// A mode, and why it could not be entered now (`none`: it could).
 struct ModeChoice {

@@ -26,11 +26,14 @@ json answer_json(const Answer& answer) {
            {"text", answer.text},
            {"holder", answer.holder},
            {"latency", seconds(answer.latency)}};
-  if (answer.route)
-    out["route"] = {{"length", answer.route->length},
-                    {"unknown_length", answer.route->unknown_length},
-                    {"complete", answer.route->corners <= answer.route->points.size()},
-                    {"points", answer.route->points}};
+  if (!answer.route) return out;
+  json points = json::array();
+  for (const Eigen::Vector3d& corner : answer.route->points)
+    points.push_back({corner.x(), corner.y(), corner.z()});
+  out["route"] = {{"length", answer.route->length},
+                  {"unknown_length", answer.route->unknown_length},
+                  {"complete", answer.route->corners <= answer.route->points.size()},
+                  {"points", std::move(points)}};
   return out;
 }
 

@@ -234,7 +234,7 @@ std::string actions_text(const std::vector<Action>& actions) {
   return table(rows);
 }
 
-std::string route_text(const Route& route) {
+std::string route_text(const contract::PlannedRoute& route) {
   constexpr std::size_t most = 12;  // Corners after the start.
   std::string out = fixed(route.length, 1) + " m";
   if (route.unknown_length > 0.0) out += ", " + fixed(route.unknown_length, 1) + " m of it not seen yet";

@@ -22,7 +22,7 @@ std::string health_text(const std::vector<const RobotView*>& robots);
 /// A row for each command: whether it is valid now, and why not.
 std::string actions_text(const std::vector<Action>& actions);
 /// A route and its corners after the start: "12.3 m, 4.0 m of it not seen yet: 3.0 0.0, 12.0 0.5".
-std::string route_text(const Route& route);
+std::string route_text(const contract::PlannedRoute& route);
 /// An answer: "r1: taken" or "r1: refused: ... [locked]". `own_name`: the reading operator, who is not named
 /// as the holder.
 std::string answer_text(const Answer& answer, const std::string& done, const std::string& own_name = {});

@@ -2,39 +2,22 @@
 #include "basestation/send/sender.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "adit/command.h"
 #include "core/command/words.hpp"
+#include "core/contract/command.hpp"
 #include "core/wire/typed.hpp"
 
 namespace adit::station {
 
 using namespace std::chrono_literals;
 
-namespace {
-
-/// Converts a route. Returns nothing if it is invalid: numbers that are not finite, or an incomplete corner.
-/// A height may be unknown.
-std::optional<Route> from_radio(const radio::PlannedRoute& in) {
-  Route route{in.length(), in.unknown_length(), in.corners(), {}};
-  if (!std::isfinite(route.length) || !std::isfinite(route.unknown_length) || in.points().size() % 3 != 0)
-    return std::nullopt;
-  for (std::size_t i = 0; i < in.points().size(); i += 3) {
-    if (!std::isfinite(in.points()[i]) || !std::isfinite(in.points()[i + 1])) return std::nullopt;
-    route.points.push_back({in.points()[i], in.points()[i + 1], in.points()[i + 2]});
-  }
-  return route;
-}
-
-}  // namespace
-
 struct Sender::Pending {
   RobotCommand robot_command{};
   std::vector<Done> done{};
-  radio::Command message{};
+  contract::Command message{};
   Time first_sent{};
   Time waits_since{};  ///< Start of the time limit; not started for a robot that was not heard yet.
   Time repeated{};
@@ -141,7 +124,7 @@ void Sender::start(Lane& to, std::shared_ptr<Pending> pending) {
   pending->first_sent = pending->waits_since = pending->repeated = strand_.now();
   renumber(to, *pending);
   ++counts_.sent;
-  if (on_sent) on_sent(pending->robot_command, pending->message.seq());
+  if (on_sent) on_sent(pending->robot_command, pending->message.seq);
   const Duration repeat = pending->is_stop() ? params_.repeat_stop : params_.repeat;
   pending->timer = strand_.every(
       repeat, [this, robot = pending->robot_command.robot, weak = std::weak_ptr<Pending>(pending)] {
@@ -151,28 +134,24 @@ void Sender::start(Lane& to, std::shared_ptr<Pending> pending) {
 }
 
 void Sender::renumber(Lane& to, Pending& pending) {
-  radio::Command& message = pending.message;
-  message.robot(pending.robot_command.robot);
-  message.station(params_.name);
-  message.station_id(params_.id);
-  if (const RobotView* robot = fleet_.robot(pending.robot_command.robot)) {
-    message.epoch().start(robot->epoch.start);
-    message.epoch().counter(robot->epoch.counter);
+  contract::Command& message = pending.message;
+  message = {.robot = pending.robot_command.robot,
+             .station = params_.name,
+             .station_id = params_.id,
+             .epoch = message.epoch,
+             .seq = to.next_seq++,
+             .request = pending.robot_command.request};
+  if (const RobotView* robot = fleet_.robot(message.robot)) {
+    message.epoch = robot->epoch;
     pending.blind = !robot->owned;
   }
-  message.seq(to.next_seq++);
-  const command::Payload payload = command::pack(pending.robot_command.request);
-  message.kind(static_cast<radio::CommandKind>(payload.number));
-  message.words(payload.words);
-  message.numbers(payload.numbers);
-  message.options(payload.options);
   pending.resting = false;
   pending.overtaken = false;
 }
 
 void Sender::transmit(Lane& to, Pending& pending) {
   // The participant counts a sample that could not be queued, and the next repeat replaces it.
-  (void)to.writer.write(pending.message);
+  (void)to.writer.write(encode(pending.message));
 }
 
 void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pending) {
@@ -211,7 +190,7 @@ void Sender::report_unheard(Pending& pending) const {
   const Answer answer{
       .robot = pending.robot_command.robot,
       .command = std::string(pending.robot_command.name()),
-      .seq = pending.message.seq(),
+      .seq = pending.message.seq,
       .reason = Reason::no_answer,
       .text = "sent, not acknowledged yet: no robot of that name has been heard (known robots: " +
               command::joined(fleet_.robot_names(), "none") +
@@ -235,49 +214,44 @@ void Sender::withdraw(Lane& to, const Pending& pending) {
   // The writer stores its newest sample and retransmits it after a gap of any length: a query replaces it. A
   // late stop is harmless, and a pending stop has replaced the sample already.
   if (pending.is_stop() || to.stop) return;
-  radio::Command question = pending.message;
-  question.seq(to.next_seq++);
-  question.kind(static_cast<radio::CommandKind>(command::info(command::verb("query")).number));
-  question.words().clear();
-  question.numbers().clear();
-  question.options(0);
-  (void)to.writer.write(question);
+  contract::Command question = pending.message;
+  question.seq = to.next_seq++;
+  question.request = command::Request(command::verb("query"));
+  (void)to.writer.write(encode(question));
 }
 
-bool Sender::worth_another(const Pending& pending, const radio::Acknowledgement& sample) const {
-  const auto reason = static_cast<Reason>(sample.reason());
+bool Sender::worth_another(const Pending& pending, const contract::Acknowledgement& ack) const {
+  const Reason reason = ack.reason;
   // The robot never received it: a stop overtook it, or a later command overtook a lost stop.
   if (reason == Reason::stale_sequence && (pending.overtaken || pending.is_stop())) return true;
   // A restarted station did not know the epoch yet; the refusal contains it.
   if (reason == Reason::stale_epoch && pending.blind) return true;
   // The robot's agent was restarted while this was pending, and this station is still the holder.
-  if (reason == Reason::stale_epoch && sample.holder() == params_.name &&
-      sample.epoch().start() != pending.message.epoch().start())
+  if (reason == Reason::stale_epoch && ack.holder == params_.name &&
+      ack.epoch.start != pending.message.epoch.start)
     return true;
   // The robot has not received this participant's presence yet.
   const bool unknown = reason == Reason::identity_mismatch || reason == Reason::unknown_station;
   return unknown && (pending.is_stop() || pending.first_sent - started_ < 5s);
 }
 
-void Sender::hear(const radio::Acknowledgement& sample, const wire::SampleInfo&) {
-  if (sample.station() != params_.name || sample.station_id() != params_.id) return;
-  const auto found = lanes_.find(sample.robot());
-  if (found == lanes_.end() || sample.seq() == 0) return;
+void Sender::hear(const contract::Acknowledgement& ack) {
+  const auto found = lanes_.find(ack.robot);
+  if (found == lanes_.end() || ack.seq == 0) return;
   Lane& to = *found->second;
   std::shared_ptr<Pending> pending;
   for (const auto& candidate : {to.stop, to.current})
-    if (candidate && candidate->message.seq() == sample.seq()) pending = candidate;
+    if (candidate && candidate->message.seq == ack.seq) pending = candidate;
   if (!pending || pending->resting) return;
-  const auto reason = static_cast<Reason>(sample.reason());
-  Answer answer{.seq = sample.seq(),
-                .accepted = sample.accepted(),
+  Answer answer{.seq = ack.seq,
+                .accepted = ack.accepted(),
                 .answered = true,
-                .reason = sample.accepted() ? Reason::none : reason,
-                .text = command::clean(sample.text(), 240),
-                .holder = command::clean(sample.holder(), 32),
+                .reason = ack.reason,
+                .text = ack.text,
+                .holder = ack.holder,
+                .route = ack.route,
                 .latency = strand_.now() - pending->first_sent};
-  if (sample.accepted() && !sample.route().empty()) answer.route = from_radio(sample.route().front());
-  if (!sample.accepted() && worth_another(*pending, sample)) {
+  if (!ack.accepted() && worth_another(*pending, ack)) {
     pending->resting = true;
     pending->refusal = std::move(answer);
     return;

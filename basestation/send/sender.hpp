@@ -46,7 +46,8 @@ class Sender {
   /// Sends a command. `done` is called once on the strand: with the robot's answer, no_answer, queue_full or
   /// wire_failed.
   void send(RobotCommand robot_command, Done done);
-  void hear(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
+  /// Processes a robot's answer to this station.
+  void hear(const contract::Acknowledgement& ack);
   /// Whether no command is queued or pending for that robot.
   bool idle(const std::string& robot) const;
 
@@ -80,7 +81,7 @@ class Sender {
   void withdraw(Lane& lane, const Pending& pending);
   void finish(Lane& lane, const std::shared_ptr<Pending>& pending, Answer answer);
   /// Whether the refusal has a temporary cause.
-  bool worth_another(const Pending& pending, const radio::Acknowledgement& sample) const;
+  bool worth_another(const Pending& pending, const contract::Acknowledgement& ack) const;
 
   SenderParams params_;
   Executor& strand_;

@@ -2,9 +2,10 @@
 #include "basestation/send/stick.hpp"
 
 #include <algorithm>
-#include <array>
+#include <utility>
 
 #include "adit/command.h"
+#include "core/contract/command.hpp"
 #include "core/wire/typed.hpp"
 
 namespace adit::station {
@@ -12,14 +13,14 @@ namespace adit::station {
 struct Stick::Stream {
   std::string robot{};
   wire::Writer<radio::Joystick> writer{};
-  radio::Joystick sample{};
+  contract::Joystick sample{};
   Source source{Source::held};
   bool active{false};
   bool pushed{false};  ///< The last sample sent was not centred.
   Time earliest{};     ///< Earliest time of the next sample at 20 Hz.
   Timer timer{};
 
-  bool centred() const { return sample.vx() == 0.0F && sample.vy() == 0.0F && sample.wz() == 0.0F; }
+  bool centred() const { return sample.twist.zero(); }
 };
 
 Stick::Stick(Id id, Executor& strand, wire::Participant& radio, Fleet& fleet)
@@ -38,16 +39,14 @@ Result<void> Stick::stream(const std::string& robot, const StickVelocity& veloci
     stream = std::make_unique<Stream>();
     stream->robot = robot;
     stream->writer = std::move(*writer);
-    stream->sample.robot(robot);
-    stream->sample.station_id(id_);
+    stream->sample.robot = robot;
+    stream->sample.station_id = id_;
     stream->earliest = strand_.now();
   }
-  radio::Joystick& sample = stream->sample;
-  const std::array<float, 3> before{sample.vx(), sample.vy(), sample.wz()};
-  sample.vx(static_cast<float>(velocity.vx));
-  sample.vy(static_cast<float>(velocity.vy));
-  sample.wz(static_cast<float>(velocity.wz));
-  const bool changed = before != std::array{sample.vx(), sample.vy(), sample.wz()};
+  // As it is sent: smaller changes are none.
+  const Twist2 twist{static_cast<float>(velocity.vx), static_cast<float>(velocity.vy),
+                     static_cast<float>(velocity.wz)};
+  const bool changed = std::exchange(stream->sample.twist, twist) != twist;
   const bool repeat_suffices = stream->active && !changed && source == Source::held;
   const bool slower = stream->source == Source::live && source == Source::held;
   stream->source = source;
@@ -91,12 +90,11 @@ bool Stick::streaming(const std::string& robot) const {
 void Stick::transmit(Stream& stream) {
   const RobotView* robot = fleet_.robot(stream.robot);
   if (!robot || !robot->located) return;  // Without a stamp to echo, the robot would refuse the sample.
-  stream.sample.epoch().start(robot->epoch.start);
-  stream.sample.epoch().counter(robot->epoch.counter);
-  stream.sample.seq(stream.sample.seq() + 1);
-  stream.sample.echo(robot->stamp);
+  stream.sample.epoch = robot->epoch;
+  ++stream.sample.seq;
+  stream.sample.echo = robot->stamp;
   // The next sample follows after 50 ms; the participant counts failures.
-  (void)stream.writer.write(stream.sample);
+  (void)stream.writer.write(encode(stream.sample));
 }
 
 }  // namespace adit::station
