@@ -240,9 +240,9 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
        pieces_to_carry()});
 }
 
-std::function<void(const PieceToCarry&, const wire::ParticipantId&)> Agent::Impl::pieces_to_carry() {
+std::function<void(const contract::BulkPiece&, const wire::ParticipantId&)> Agent::Impl::pieces_to_carry() {
   if (!context->carrier) return {};
-  return [this](const PieceToCarry& piece, const wire::ParticipantId& from) {
+  return [this](const contract::BulkPiece& piece, const wire::ParticipantId& from) {
     // Only the robot itself says what its map is.
     if (context->peers.is_robot(piece.robot, from))
       (void)context->carrier->take(piece, command_strand().now());

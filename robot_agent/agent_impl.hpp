@@ -47,7 +47,7 @@ struct Agent::Impl {
   StateKeeper::Outputs keeper_outputs();
   std::shared_ptr<const nav::PlannerLibrary> library();
   FindingSource::Outputs findings_outputs();
-  std::function<void(const PieceToCarry&, const wire::ParticipantId&)> pieces_to_carry();
+  std::function<void(const contract::BulkPiece&, const wire::ParticipantId&)> pieces_to_carry();
   UnitParams command_unit();
   UnitParams planner_unit();
   UnitParams router_unit();

@@ -7,7 +7,7 @@
 #include "basestation/map/merged_map.hpp"
 #include "bench/map_link/counted_source.hpp"
 #include "bench/map_link/rule.hpp"
-#include "core/transfer/receipt_message.hpp"
+#include "core/contract/bulk.hpp"
 #include "core/transfer/receiver.hpp"
 #include "core/transfer/sender.hpp"
 #include "core/wire/typed.hpp"
@@ -121,14 +121,10 @@ class AditRule final : public Rule {
         r.pose_bytes += piece.data.size();
       else
         note_sent(robot, piece);
-      radio::BulkPiece message;
-      message.robot(r.name);
-      message.session(r.sender.session());
-      message.id(piece.id);
-      message.kind(static_cast<std::uint8_t>(piece.kind));
-      message.waiting(piece.waiting);
-      message.data(piece.data);
-      wire::encode(message, buffer_);
+      wire::encode(
+          encode(contract::BulkPiece{r.name, r.sender.session(), piece.id,
+                                     static_cast<std::uint8_t>(piece.kind), piece.waiting, piece.data}),
+          buffer_);
       air.send(Air::robot(robot), Air::kStation, buffer_.size(),
                [this, robot, session = r.sender.session(), piece] { arrived(robot, session, piece); });
     }
@@ -174,19 +170,14 @@ class AditRule final : public Rule {
   void acknowledge() {
     const auto receipts = receiver_.due(mission_.air.now(), mission_.air.link().bandwidth);
     if (!receipts) return;
-    radio::BulkAck message;
-    message.station("base");
-    message.start(1);
-    for (const auto& [robot, receipt] : *receipts)
-      message.receipts().push_back(transfer::to_message<radio::BulkReceipt>(robot, receipt));
-    wire::encode(message, buffer_);
-    for (std::size_t i = 0; i < robots_.size(); ++i) {
-      transfer::Ack ack{kStation, 1, {}};
-      for (const auto& [robot, receipt] : *receipts)
-        if (robot == robots_[i]->name) ack.receipt = receipt;
+    const contract::BulkAck sent{
+        .station = "base", .station_id = kStation, .start = 1, .receipts = *receipts};
+    wire::encode(encode(sent), buffer_);
+    for (std::size_t i = 0; i < robots_.size(); ++i)
       mission_.air.send(Air::kStation, Air::robot(i), buffer_.size(),
-                        [this, i, ack] { robots_[i]->sender.acknowledged(ack, mission_.air.now()); });
-    }
+                        [this, i, ack = sent.to(robots_[i]->name)] {
+                          robots_[i]->sender.acknowledged(ack, mission_.air.now());
+                        });
   }
 
   BlockIndex lattice(std::size_t robot, std::uint32_t submap, const BlockIndex& index) const {

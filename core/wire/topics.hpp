@@ -78,8 +78,6 @@ inline constexpr Topic<radio::BulkAck> kBulkAck{
 /// Partition of both topics for the robots that carry maps: they acknowledge there, and a robot that no
 /// station hears sends there.
 inline constexpr const char* kCarryPartition = "carry";
-/// Word in Capabilities::services of a robot that carries maps.
-inline constexpr const char* kCarryService = "carry_map";
 
 /// Robots to robots: position, motion, and their parts in what several robots do together.
 inline constexpr Topic<radio::TeamBeacon> kTeam{

@@ -16,8 +16,7 @@ namespace adit::agent {
 class Convoy;
 class RightOfWay;
 
-/// Maximum distance of goals and robot poses from the map's origin, m.
-inline constexpr double kFarthestPlace = 10'000.0;
+using contract::kFarthestPlace;
 
 enum class GoalState : std::uint8_t { none, kept, active, blocked, reached };
 

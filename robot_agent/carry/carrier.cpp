@@ -15,9 +15,7 @@ Carrier::Carrier(std::uint64_t seed, CarryBounds bounds)
   for (std::uint8_t& byte : id_) byte = static_cast<std::uint8_t>(random.below(256));
 }
 
-Result<void> Carrier::store(const PieceToCarry& piece) {
-  if (piece.data.size() > transfer::kMaxPieceBytes)
-    return {Reason::malformed, "a piece is longer than any robot sends"};
+Result<void> Carrier::store(const contract::BulkPiece& piece) {
   const Error no_room{Reason::queue_full, "no room to carry more of the map"};
   if (piece.kind == static_cast<std::uint8_t>(transfer::Kind::map_blocks)) {
     const auto blocks = perception::decode(
@@ -39,7 +37,7 @@ Result<void> Carrier::store(const PieceToCarry& piece) {
   return {Reason::not_supported, "no part of a map"};
 }
 
-Result<void> Carrier::take(const PieceToCarry& piece, Time now) {
+Result<void> Carrier::take(const contract::BulkPiece& piece, Time now) {
   const Result<void> stored = store(piece);
   if (!stored) ++refused_;
   if (stored || transfer::is_acknowledged(stored.reason()))

@@ -2,11 +2,11 @@
 #pragma once
 #include <array>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/contract/bulk.hpp"
 #include "core/result/result.hpp"
 #include "core/transfer/receiver.hpp"
 #include "robot_agent/carry/carried_blocks.hpp"
@@ -14,14 +14,6 @@
 #include "robot_agent/carry/station_views.hpp"
 
 namespace adit::agent {
-
-/// A piece that another robot sent to the carriers.
-struct PieceToCarry {
-  std::string robot{};  ///< The robot whose participant sent it.
-  std::uint32_t session{}, id{};
-  std::uint8_t kind{};  ///< Of transfer::Kind, or of a later release.
-  std::span<const std::uint8_t> data{};
-};
 
 /// Carries the maps of other robots to the stations: receives the map of a robot that hears no station, and
 /// sends it on where a station is heard. In memory only: after a restart it has another id and nothing, so
@@ -34,10 +26,11 @@ class Carrier {
   Carrier(const Carrier&) = delete;
   Carrier& operator=(const Carrier&) = delete;
 
-  /// Takes a piece. Errors: malformed (also: of another robot's map), wrong_protocol (of another release),
-  /// not_supported (no part of a map), out_of_range (changes of blocks that are not here in that state),
-  /// queue_full (no room). What transfer::is_acknowledged says is acknowledged.
-  Result<void> take(const PieceToCarry& piece, Time now);
+  /// Takes a piece that another robot sent to the carriers. Errors: malformed (also: of another robot's map),
+  /// wrong_protocol (of another release), not_supported (no part of a map), out_of_range (changes of blocks
+  /// that are not here in that state), queue_full (no room). What transfer::is_acknowledged says is
+  /// acknowledged.
+  Result<void> take(const contract::BulkPiece& piece, Time now);
   /// The receipts to send now, by robot, see transfer::Receiver::due. `bandwidth`: of the own link, bit/s.
   std::optional<std::vector<std::pair<std::string, transfer::Receipt>>> due(Time now, double bandwidth) {
     return receiver_.due(now, bandwidth);
@@ -57,7 +50,7 @@ class Carrier {
   std::uint64_t refused() const { return refused_; }
 
  private:
-  Result<void> store(const PieceToCarry& piece);
+  Result<void> store(const contract::BulkPiece& piece);
 
   transfer::PeerId id_{};
   Time now_{};

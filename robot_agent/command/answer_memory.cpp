@@ -74,7 +74,8 @@ void AnswerMemory::restore(const std::vector<KeptAnswers>& kept, Time now) {
     entry.floor = k.floor;
     entry.used = now;
     for (const KeptAnswer& a : k.answers)
-      entry.answers[a.seq % kAnswers] = {k.station, k.station_id, a.seq, a.reason, a.text, {}, {}};
+      entry.answers[a.seq % kAnswers] = {
+          .station = k.station, .station_id = k.station_id, .seq = a.seq, .reason = a.reason, .text = a.text};
   }
 }
 

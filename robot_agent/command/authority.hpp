@@ -2,17 +2,13 @@
 #pragma once
 #include <optional>
 
+#include "core/contract/authority.hpp"
 #include "core/time/time.hpp"
 #include "robot_agent/command/types.hpp"
 
 namespace adit::agent {
 
-/// A station that holds or stops a robot, identified by name and id, independent of its participant.
-struct Party {
-  std::string name{};
-  Id id{};
-  bool operator==(const Party&) const = default;
-};
+using contract::Party;
 
 /// The authority over the robot: holder, lock and its lease, and epoch (rules 1 and 2). CommandInterface
 /// decides which station may change it.

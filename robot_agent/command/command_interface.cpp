@@ -360,8 +360,13 @@ bool CommandInterface::unlock_at_console() {
 Answer CommandInterface::answer(const Command& c, const Outcome& outcome) const {
   std::string text = outcome.text;
   if (text.empty() && outcome.reason != Reason::none) text = describe(outcome.reason);
-  return {c.from.name,       c.from.id, c.seq, outcome.reason, std::move(text), authority_.holder_name(),
-          authority_.epoch()};
+  return {.station = c.from.name,
+          .station_id = c.from.id,
+          .seq = c.seq,
+          .reason = outcome.reason,
+          .text = std::move(text),
+          .holder = authority_.holder_name(),
+          .epoch = authority_.epoch()};
 }
 
 bool CommandInterface::may_be_back(const Sender& from) const {

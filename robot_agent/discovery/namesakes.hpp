@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/contract/discovery.hpp"
 #include "core/time/time.hpp"
 #include "core/wire/participant.hpp"
 #include "core/wire/qos.hpp"
@@ -36,12 +37,7 @@ class Namesakes {
     undecided,  ///< Another one was heard first; it is not confirmed yet that it is alive.
     gives_way,
   };
-  /// What a robot that gives way announces.
-  struct Claim {
-    bool held{};
-    std::uint64_t start{};  ///< Id of the start of its command component, as in its epoch.
-    bool operator==(const Claim&) const = default;
-  };
+  using Claim = contract::NameClaim;
 
   explicit Namesakes(const wire::ParticipantId& own) : own_(own) {}
 

@@ -5,17 +5,19 @@
 
 #include "core/component/call.hpp"
 #include "core/component/component.hpp"
+#include "core/contract/command.hpp"
 #include "nav/explore/explorer.hpp"
 #include "nav/goals/goal_check.hpp"
 #include "nav/right_of_way/place_search.hpp"
 #include "nav/routing/route_follower.hpp"
 #include "robot_agent/common/goal_report.hpp"
-#include "robot_agent/common/planned_route.hpp"
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/planner.hpp"
 #include "robot_agent/motion/team_robot.hpp"
 
 namespace adit::agent {
+
+using contract::PlannedRoute;
 
 /// The areas of a robot, odometry frame: see Fence.
 struct RouteAreas {

@@ -6,7 +6,12 @@
 #include <map>
 #include <utility>
 
-#include "core/transfer/receipt_message.hpp"
+#include "adit/authority.h"
+#include "adit/bulk.h"
+#include "adit/command.h"
+#include "adit/discovery.h"
+#include "adit/team.h"
+#include "core/contract/bulk.hpp"
 #include "core/wire/component_io.hpp"
 #include "core/wire/link/peer_meter.hpp"
 #include "core/wire/topics.hpp"
@@ -41,8 +46,8 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::BulkAck> carrier_ack{};  ///< Open if this robot carries maps.
   std::function<void(const radio::BulkAck&, const wire::SampleInfo&)> acknowledged{};
   bool reaches_carriers{false};
-  radio::Presence presence_sample{};
-  radio::Capabilities capabilities_sample{};
+  contract::Presence presence_sample{};
+  contract::Capabilities capabilities_sample{};
   wire::PeerMeter stations{};  // Quality of the link from each station.
   Timer presence_timer{};
   radio::RobotState state_sample{};
@@ -60,9 +65,9 @@ struct RadioEdge::Endpoints {
     return io.open(readers.emplace_back(), topic, std::move(handler), partition);
   }
   void say_present() {
-    if (presence_sample.name().empty()) return;  // send_capabilities() was not called yet.
-    presence_sample.seq(presence_sample.seq() + 1);
-    (void)presence.write(presence_sample);
+    if (presence_sample.name.empty()) return;  // send_capabilities() was not called yet.
+    ++presence_sample.seq;
+    (void)presence.write(encode(presence_sample));
   }
   // The participant counts failed writes, and the link report shows them.
   template <class T>
@@ -134,14 +139,17 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
   const auto& commands = dependencies.commands;
   const auto answer = [&e, settle = dependencies.settle](const std::optional<Answer>& a) {
     if (!a) return;
-    if (a->seq == 0)
-      return (void)e.acknowledgement.write(to_radio(*a, e.robot));  // A stick sample changes no stored state.
-    settle([&e, a = *a] { (void)e.acknowledgement.write(to_radio(a, e.robot)); });
+    radio::Acknowledgement sample = encode(*a);
+    sample.robot(e.robot);
+    const auto send = [&e, sample = std::move(sample)] { (void)e.acknowledgement.write(sample); };
+    if (a->seq == 0) return send();  // A stick sample changes no stored state.
+    settle(send);
   };
   Namesakes& namesakes = dependencies.namesakes;
   e.acknowledged = [&e, taken = dependencies.pieces_acknowledged](const radio::BulkAck& a,
                                                                   const wire::SampleInfo& info) {
-    if (taken) taken(a.station(), from_radio(a, e.robot), info.sender);
+    const auto ack = contract::decode(a);
+    if (taken && ack) taken(ack->station, ack->to(e.robot), info.sender);
   };
   e.wire.on_participant(e.strand,
                         [&e, commands, &directory, &namesakes](const wire::ParticipantEvent& event) {
@@ -155,43 +163,46 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                             commands([&](CommandInterface& interface) { interface.departed(event.id); });
                         });
   for (const auto& made : {
-           e.read(
-               topics::kPresence,
-               [&e, commands, &directory, &namesakes](const radio::Presence&p, const wire::SampleInfo&info) {
-                 const Time now = e.strand.now();
-                 if (p.kind() == radio::AGENT_STATION && valid_name(p.name()))
-                   e.stations.heard(p.name(), p.seq(), now);
-                 if (p.kind() == radio::AGENT_STATION) namesakes.station(now);
-                 if (p.kind() == radio::AGENT_ROBOT && p.name() == e.robot && info.sender != e.wire.id()) {
-                   namesakes.heard(info.sender, now);
-                   directory.on_namesake(p.name(), p.id(), info.sender, now);
-                 }
-                 if (p.kind() == radio::AGENT_STATION)
-                   commands([&](CommandInterface& interface) {
-                     interface.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
-                   });
-                 if (p.name() != e.robot) directory.on_presence(p.name(), p.id(), info.sender, now);
-               }),
-           e.read(topics::kCapabilities,
-                  [&e, commands, &directory, &namesakes](const radio::Capabilities&c,
+           e.read(topics::kPresence,
+                  [&e, commands, &directory, &namesakes](const radio::Presence&sample,
                                                          const wire::SampleInfo&info) {
+                    const auto p = contract::decode(sample);
+                    if (!p) return;
                     const Time now = e.strand.now();
-                    if (c.kind() == radio::AGENT_ROBOT && c.name() == e.robot)
-                      namesakes.described(info.sender, claim_of(c), now);
-                    if (c.kind() == radio::AGENT_STATION)
+                    if (p->kind == contract::AgentKind::station) {
+                      e.stations.heard(p->name, p->seq, now);
+                      namesakes.station(now);
                       commands([&](CommandInterface& interface) {
-                        interface.hear({c.name(), c.id(), info.sender}, c.protocol(), now);
+                        interface.hear({p->name, p->id, info.sender}, p->protocol, now);
                       });
-                    if (c.kind() == radio::AGENT_STATION && c.placed())
-                      e.wire.set_place(info.sender, {c.place()[0], c.place()[1], c.place()[2]});
-                    if (c.name() != e.robot) directory.on_capabilities(from_radio(c, info.sender), now);
+                    } else if (p->name == e.robot && info.sender != e.wire.id()) {
+                      namesakes.heard(info.sender, now);
+                      directory.on_namesake(p->name, p->id, info.sender, now);
+                    }
+                    if (p->name != e.robot) directory.on_presence(p->name, p->id, info.sender, now);
+                  }),
+           e.read(topics::kCapabilities,
+                  [&e, commands, &directory, &namesakes](const radio::Capabilities&sample,
+                                                         const wire::SampleInfo&info) {
+                    const auto c = contract::decode(sample);
+                    if (!c) return;
+                    const Time now = e.strand.now();
+                    if (c->kind == contract::AgentKind::station)
+                      commands([&](CommandInterface& interface) {
+                        interface.hear({c->name, c->id, info.sender}, c->protocol, now);
+                      });
+                    else if (c->name == e.robot)
+                      namesakes.described(info.sender, contract::claim_of(c->services), now);
+                    if (c->place)
+                      e.wire.set_place(info.sender, {(*c->place)[0], (*c->place)[1], (*c->place)[2]});
+                    if (c->name != e.robot) directory.on_capabilities(received(*c, info.sender), now);
                   }),
            e.read(
                topics::kCommand,
                [&e, commands, answer,
                 find_route = dependencies.find_route,
                 check_goal = dependencies.check_goal](const radio::Command&c, const wire::SampleInfo&info) {
-                 const Command command = from_radio(c, info.sender);
+                 const Command command = received(contract::decode(c), info.sender);
                  if (asks_for_goal(command)) return judge_goal(e, command, commands, answer, check_goal);
                  commands([&](CommandInterface& interface) {
                    const auto given = interface.handle(command, e.strand.now());
@@ -215,16 +226,14 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                [&e, commands, answer](const radio::Joystick&j, const wire::SampleInfo&info) {
                  commands([&](CommandInterface& interface) {
                    const Time now = e.strand.now();
-                   StickSample sample = from_radio(j, info.sender);
-                   sample.waited = now - info.received;
-                   answer(interface.handle(sample, now));
+                   answer(interface.handle({contract::decode(j), info.sender, now - info.received}, now));
                  });
                },
                e.robot),
            e.read(topics::kTeam,
                   [&e, take = dependencies.beacon](const radio::TeamBeacon&b, const wire::SampleInfo&info) {
                     if (info.sender == e.wire.id() || !take) return;
-                    const auto beacon = from_radio(b);
+                    const auto beacon = contract::decode(b);
                     e.malformed_beacons += beacon ? 0 : 1;
                     take(beacon, info.sender);
                   }),
@@ -236,8 +245,8 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
     return made.error();
   return e.read(
       topics::kBulk,
-      [take = dependencies.piece_to_carry](const radio::BulkPiece& piece, const wire::SampleInfo& info) {
-        take({piece.robot(), piece.session(), piece.id(), piece.kind(), piece.data()}, info.sender);
+      [take = dependencies.piece_to_carry](const radio::BulkPiece& sample, const wire::SampleInfo& info) {
+        if (const auto piece = contract::decode(sample)) take(*piece, info.sender);
       },
       topics::kCarryPartition);
 }
@@ -257,17 +266,13 @@ void RadioEdge::close() {
 }
 
 void RadioEdge::send(const TeamBeacon& beacon) {
-  (void)endpoints_->team.write(to_radio(beacon));  // Best effort: the next one replaces it.
+  (void)endpoints_->team.write(encode(beacon));  // Best effort: the next one replaces it.
 }
 
 void RadioEdge::send(const transfer::Piece& piece, std::uint32_t session) {
-  radio::BulkPiece out;
-  out.robot(endpoints_->robot);
-  out.session(session);
-  out.id(piece.id);
-  out.kind(static_cast<std::uint8_t>(piece.kind));
-  out.waiting(piece.waiting);
-  out.data(piece.data);
+  const radio::BulkPiece out =
+      encode(contract::BulkPiece{endpoints_->robot, session, piece.id, static_cast<std::uint8_t>(piece.kind),
+                                 piece.waiting, piece.data});
   // Best effort: core/transfer repairs what is lost.
   if (!piece.for_carriers)
     (void)endpoints_->bulk.write(out);
@@ -278,18 +283,16 @@ void RadioEdge::send(const transfer::Piece& piece, std::uint32_t session) {
 void RadioEdge::send(const transfer::PeerId& carrier,
                      const std::vector<std::pair<std::string, transfer::Receipt>>& receipts) {
   if (!endpoints_->carrier_ack) return;
-  radio::BulkAck out;
-  out.station(endpoints_->robot);
-  out.station_id(carrier);
-  out.start(1);
-  out.carrier(true);
-  for (const auto& [robot, receipt] : receipts)
-    out.receipts().push_back(transfer::to_message<radio::BulkReceipt>(robot, receipt));
-  (void)endpoints_->carrier_ack.write(out);  // Best effort: a receipt has what those before it had.
+  // Best effort: a receipt has what those before it had.
+  (void)endpoints_->carrier_ack.write(encode(contract::BulkAck{.station = endpoints_->robot,
+                                                               .station_id = carrier,
+                                                               .start = 1,
+                                                               .receipts = receipts,
+                                                               .carrier = true}));
 }
 
 void RadioEdge::send_authority(const CommandInterface& commands, Time now) {
-  endpoints_->send(endpoints_->authority, to_radio(commands, endpoints_->robot, now));
+  endpoints_->send(endpoints_->authority, encode(status_of(commands, endpoints_->robot, now)));
 }
 
 void RadioEdge::send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options) {
@@ -323,23 +326,20 @@ void RadioEdge::send_route(const FollowedRoute& route) {
 void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol,
                                   const ModeTable& modes) {
   Endpoints& e = *endpoints_;
-  e.capabilities_sample = to_radio(platform, e.robot, id, protocol, modes);
-  if (e.carrier_ack) e.capabilities_sample.services().push_back(topics::kCarryService);
-  (void)e.capabilities.write(e.capabilities_sample);
+  e.capabilities_sample = capabilities_of(platform, e.robot, id, protocol, modes);
+  if (e.carrier_ack) e.capabilities_sample.services.push_back(contract::service::kCarryMap);
+  (void)e.capabilities.write(encode(e.capabilities_sample));
   // Without it, stations show no route.
   if (platform.router != "none") (void)e.io.open(e.route, topics::kRoute);
-  e.presence_sample.name(e.robot);
-  e.presence_sample.kind(radio::AGENT_ROBOT);
-  e.presence_sample.id(id);
-  e.presence_sample.protocol(protocol);
+  e.presence_sample = {e.robot, contract::AgentKind::robot, id, protocol, e.presence_sample.seq};
   e.say_present();
   e.presence_timer = e.strand.every(kPresencePeriod, [&e] { e.say_present(); });
 }
 
 void RadioEdge::send_claim(const std::optional<Namesakes::Claim>& claim) {
-  radio::Capabilities sample = endpoints_->capabilities_sample;
-  if (claim) sample.services().push_back(service_word(*claim));
-  (void)endpoints_->capabilities.write(sample);
+  contract::Capabilities sample = endpoints_->capabilities_sample;
+  if (claim) sample.services.push_back(contract::service_word(*claim));
+  (void)endpoints_->capabilities.write(encode(sample));
 }
 
 void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed, double state_rate) {

@@ -58,7 +58,7 @@ class RadioEdge {
     std::function<void(const std::string& station, const transfer::Ack& ack, const wire::ParticipantId& from)>
         pieces_acknowledged{};
     /// Takes a piece of another robot's map. Empty: this robot carries no maps.
-    std::function<void(const PieceToCarry& piece, const wire::ParticipantId& from)> piece_to_carry{};
+    std::function<void(const contract::BulkPiece& piece, const wire::ParticipantId& from)> piece_to_carry{};
   };
 
   /// `io`: the command component's, on the radio domain. Errors: those of the participant.

@@ -91,10 +91,11 @@ class CarryTest : public MapBench, public testing::Test {
   }
   void hear(const transfer::Piece& piece, bool by_carrier, Time now) {
     const auto kind = static_cast<std::uint8_t>(piece.kind);
+    const contract::BulkPiece sent{name, sender->session(), piece.id, kind, piece.waiting, piece.data};
     if (by_carrier)
-      EXPECT_TRUE(carrier->take({name, sender->session(), piece.id, kind, piece.data}, now).ok());
+      EXPECT_TRUE(carrier->take(sent, now).ok());
     else
-      base.pieces->take({name, sender->session(), piece.id, kind, piece.waiting, piece.data});
+      base.pieces->take(sent);
   }
   void acknowledge(const std::vector<std::pair<std::string, transfer::Receipt>>& due, Time now) {
     transfer::Ack ack{.peer = base.id, .start = base.replica->start()};

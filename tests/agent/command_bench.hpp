@@ -71,8 +71,8 @@ class CommandBench {
   StickSample stick(const std::string& by, Twist2 twist = {}) {
     Station& s = station(by);
     interface_->sent_stamp(to_stamp(now));
-    return {"r1",          s.sender.id, s.sender.participant, interface_->authority().epoch(), ++stick_seq_,
-            to_stamp(now), twist};
+    return {{"r1", s.sender.id, interface_->authority().epoch(), ++stick_seq_, to_stamp(now), twist},
+            s.sender.participant};
   }
 
   /// "op1", "impostor:op1" (own id) or "forger:op1" (op1's id); the latter two are made when first named.

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "adit/bulk.h"
+#include "core/contract/bulk.hpp"
 #include "core/findings/finding_piece.hpp"
 #include "core/store/memory_disk.hpp"
-#include "core/transfer/receipt_message.hpp"
 #include "core/transfer/receiver.hpp"
 #include "tests/agent/agent_bench.hpp"
 
@@ -59,13 +59,8 @@ class Found : public testing::Test {
   void acknowledge(Desk& desk) {
     const auto due = desk.receiver.due(bench->strand().now(), 0.0);
     if (!due) return;
-    radio::BulkAck ack;
-    ack.station(desk.op->name);
-    ack.station_id(desk.op->id);
-    ack.start(7);
-    for (const auto& [robot, receipt] : *due)
-      ack.receipts().push_back(transfer::to_message<radio::BulkReceipt>(robot, receipt));
-    (void)desk.acks.write(ack);
+    (void)desk.acks.write(encode(contract::BulkAck{
+        .station = desk.op->name, .station_id = desk.op->id, .start = 7, .receipts = *due}));
   }
   void report(std::uint64_t id) {
     findings::Finding f;
@@ -120,21 +115,12 @@ TEST_F(Found, AnotherParticipantCannotSayWhatAStationHas) {
   const auto foreign = bench->network().join(77, "stranger");
   auto writer = wire::Writer<radio::BulkAck>::make(*foreign, wire::topics::kBulkAck).value();
   bench->run(1s);
-  radio::BulkReceipt receipt;
-  receipt.robot("r1");
   ASSERT_FALSE(desks[0].heard.empty());
-  radio::BulkAck ack;
-  ack.station(op1->name);
-  ack.station_id(op1->id);
-  ack.start(7);
-  receipt.session(session);
-  receipt.newest(1);
-  receipt.received({~std::uint64_t{0}, ~std::uint64_t{0}});
-  ack.receipts().push_back(receipt);
   for (int i = 0; i < 20; ++i) {
-    receipt.newest(static_cast<std::uint32_t>(desks[0].heard.size()));
-    ack.receipts()[0] = receipt;
-    (void)writer.write(ack);
+    const auto newest = static_cast<std::uint32_t>(desks[0].heard.size());
+    const transfer::Receipt all{session, newest, {~std::uint64_t{0}, ~std::uint64_t{0}}};
+    (void)writer.write(encode(contract::BulkAck{
+        .station = op1->name, .station_id = op1->id, .start = 7, .receipts = {{"r1", all}}}));
     bench->run(100ms);
   }
   desks[0].heard.clear();

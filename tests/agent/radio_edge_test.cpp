@@ -34,16 +34,7 @@ class RadioEdgeTest : public testing::Test {
   /// op1 sends a stick that is pushed.
   void send_stick() {
     bench.now = strand->now();
-    const StickSample stick = bench.stick("op1");
-    radio::Joystick sample;
-    sample.robot(stick.robot);
-    sample.station_id(stick.station_id);
-    sample.epoch().start(stick.epoch.start);
-    sample.epoch().counter(stick.epoch.counter);
-    sample.seq(stick.seq);
-    sample.echo(stick.echo);
-    sample.vx(0.5f);
-    EXPECT_TRUE(joystick.write(sample));
+    EXPECT_TRUE(joystick.write(encode(bench.stick("op1", {0.5, 0.0, 0.0}))));
   }
 
   VirtualScheduler scheduler{1};
