@@ -10,9 +10,8 @@ namespace {
 
 /// All fields except the ages and the beacon.
 auto content(const Peer& p) {
-  return std::tie(p.name, p.id, p.station, p.participant, p.has_capabilities, p.protocol, p.software,
-                  p.platform, p.length, p.width, p.height, p.max_speed, p.modes, p.place, p.namesake,
-                  p.present);
+  return std::tie(p.name, p.id, p.kind, p.participant, p.has_capabilities, p.protocol, p.software, p.platform,
+                  p.length, p.width, p.height, p.max_speed, p.modes, p.place, p.namesake, p.present);
 }
 
 bool before(const Peer& a, const Peer& b) {
@@ -45,12 +44,14 @@ const Peer* PeerTable::by_participant(const wire::ParticipantId& participant) co
 
 bool PeerTable::is_robot(const std::string& name, const wire::ParticipantId& participant) const {
   const Peer* known = by_participant(participant);
-  return known != nullptr && !known->station && !known->namesake && known->name == name;
+  return known != nullptr && !known->is_station() && !known->namesake && known->name == name;
 }
 
 bool PeerTable::carrier_present() const {
-  return std::any_of(peers_.begin(), peers_.end(),
-                     [](const Peer& peer) { return peer.present && !peer.namesake && peer.carries_maps; });
+  return std::any_of(peers_.begin(), peers_.end(), [](const Peer& peer) {
+    return peer.present && !peer.namesake && !peer.is_station() &&
+           contract::offers(peer.services, contract::service::kCarryMap);
+  });
 }
 
 Peer* PeerTable::add(Peer peer, Time now) {
@@ -98,10 +99,10 @@ void PeerTable::accept_station(const Sender& from, Time now) {
   Peer peer{};
   peer.name = from.name;
   peer.id = from.id;
-  peer.station = true;
+  peer.kind = contract::AgentKind::station;
   peer.participant = from.participant;
   Peer* known = edit(from.name);
-  if (known && known->station && known->id == from.id) return touch(*known, now);
+  if (known && known->is_station() && known->id == from.id) return touch(*known, now);
   // A name belongs to its id while that station is heard or holds the robot; only the holder takes
   // precedence.
   if (known && (known->present || is_holder(*known)) && !is_holder(peer)) return;
@@ -133,7 +134,7 @@ void PeerTable::hear_namesake(const std::string& name, const Id& id, const wire:
 BeaconFault PeerTable::hear_beacon(const TeamBeacon& beacon, const wire::ParticipantId& participant,
                                    Time now) {
   const auto judge = [&](const Peer* peer) {
-    if (!peer || peer->station || peer->participant != participant) return BeaconFault::unknown;
+    if (!peer || peer->is_station() || peer->participant != participant) return BeaconFault::unknown;
     const auto& last = peer->heard_beacon;
     const bool is_old = last && last->beacon.start == beacon.start && beacon.seq <= last->beacon.seq;
     return is_old ? BeaconFault::old : BeaconFault::none;
@@ -151,7 +152,7 @@ BeaconFault PeerTable::hear_beacon(const TeamBeacon& beacon, const wire::Partici
 
 std::size_t PeerTable::robots_present() const {
   return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), [](const Peer& peer) {
-    return peer.present && !peer.station && !peer.namesake;
+    return peer.present && !peer.is_station() && !peer.namesake;
   }));
 }
 
@@ -179,7 +180,7 @@ std::string describe(const PeerTable& peers, Time now) {
   std::string text;
   for (const Peer& peer : peers.all()) {
     char line[256];
-    const std::string kind = peer.station            ? "station"
+    const std::string kind = peer.is_station()       ? "station"
                              : peer.platform.empty() ? "robot"
                                                      : command::clean(peer.platform, 32);
     std::snprintf(line, sizeof line, "%-16s %-8s %-8s heard %.1f s ago", peer.name.c_str(), kind.c_str(),
@@ -189,8 +190,8 @@ std::string describe(const PeerTable& peers, Time now) {
                   seconds(peer.age(now)));
     text += line;
     if (peer.place) {
-      std::snprintf(line, sizeof line, ", at %.1f %.1f %.1f", peer.place->x(), peer.place->y(),
-                    peer.place->z());
+      std::snprintf(line, sizeof line, ", at %.1f %.1f %.1f", (*peer.place)[0], (*peer.place)[1],
+                    (*peer.place)[2]);
       text += line;
     }
     if (peer.heard_beacon) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,20 +11,9 @@
 namespace adit::agent {
 
 /// Another robot or a station: identity, capabilities and time of the last heartbeat.
-struct Peer {
-  std::string name{};
-  Id id{};
-  bool station{};
+struct Peer : contract::Capabilities {
   wire::ParticipantId participant{};  ///< The participant that is bound to name and id.
-  bool has_capabilities{};            ///< The capabilities below were received.
-  std::uint16_t protocol{};
-  std::string software{};
-  std::string platform{};  ///< Name of the platform: wheeled, tracked, legged, ...; empty for a station.
-  double length{}, width{}, height{};  ///< Footprint and height, m
-  double max_speed{};                  ///< m/s
-  std::vector<std::string> modes{};
-  bool carries_maps{};                     ///< It carries maps of other robots on to stations.
-  std::optional<Eigen::Vector3d> place{};  ///< Position of a station, map frame, m; unset: not announced.
+  bool has_capabilities{};            ///< More than name, id and kind was received.
 
   std::optional<HeardBeacon> heard_beacon{};  ///< Of a robot; unset: none arrived.
 
@@ -34,6 +22,7 @@ struct Peer {
   Time first_seen{}, last_seen{};  ///< First and last heartbeat, by this robot's clock.
 
   Duration age(Time now) const { return now - last_seen; }
+  bool is_station() const { return kind == contract::AgentKind::station; }
 };
 using PeerList = std::vector<Peer>;  ///< Sorted by name.
 

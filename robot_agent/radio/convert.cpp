@@ -53,24 +53,6 @@ Command received(contract::Command message, const wire::ParticipantId& sender) {
           std::move(message.invalid)};
 }
 
-Peer received(const contract::Capabilities& message, const wire::ParticipantId& sender) {
-  Peer out{.name = message.name,
-           .id = message.id,
-           .station = message.kind == contract::AgentKind::station,
-           .participant = sender,
-           .protocol = message.protocol,
-           .software = message.software,
-           .platform = message.platform,
-           .length = message.length,
-           .width = message.width,
-           .height = message.height,
-           .max_speed = message.max_speed,
-           .modes = message.modes};
-  out.carries_maps = !out.station && contract::offers(message.services, contract::service::kCarryMap);
-  if (message.place) out.place = Eigen::Map<const Eigen::Vector3f>(message.place->data()).cast<double>();
-  return out;
-}
-
 radio::Notification to_radio(const Notice& notice, const std::string& robot) {
   radio::Notification out;
   out.robot(robot);

@@ -13,7 +13,6 @@ namespace adit::agent {
 
 /// Returns the received message as the command strand handles it, with the participant that sent it.
 Command received(contract::Command message, const wire::ParticipantId& sender);
-Peer received(const contract::Capabilities& message, const wire::ParticipantId& sender);
 
 contract::AuthorityStatus status_of(const CommandInterface& commands, const std::string& robot, Time now);
 contract::Capabilities capabilities_of(const Platform& platform, const std::string& robot, const Id& id,

@@ -195,7 +195,7 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                       namesakes.described(info.sender, contract::claim_of(c->services), now);
                     if (c->place)
                       e.wire.set_place(info.sender, {(*c->place)[0], (*c->place)[1], (*c->place)[2]});
-                    if (c->name != e.robot) directory.on_capabilities(received(*c, info.sender), now);
+                    if (c->name != e.robot) directory.on_capabilities({*c, info.sender}, now);
                   }),
            e.read(
                topics::kCommand,

@@ -21,7 +21,7 @@ class DirectoryTest : public testing::Test {
     r.name = name;
     r.id = of(name);
     r.participant[0] = participant;
-    r.station = station;
+    if (station) r.kind = contract::AgentKind::station;
     return r;
   }
   Id of(const std::string& name) {

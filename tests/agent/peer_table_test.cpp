@@ -24,7 +24,7 @@ class PeerTableTest : public testing::Test {
     p.name = name;
     p.id = id_of(name);
     p.participant = participant(number);
-    p.station = station;
+    if (station) p.kind = contract::AgentKind::station;
     return p;
   }
   static Sender sender(const std::string& name, int number) {
@@ -147,10 +147,10 @@ TEST_F(PeerTableTest, TheHolderIsNameAndId) {
 TEST_F(PeerTableTest, AStationIsKnownByItsCommandsAloneUntilItDescribesItself) {
   peers.accept_station(sender("op1", 1), now);
   ASSERT_NE(find("op1"), nullptr);
-  EXPECT_TRUE(find("op1")->station);
+  EXPECT_TRUE(find("op1")->is_station());
   EXPECT_FALSE(find("op1")->has_capabilities);
   Peer said = peer("op1", 1, true);
-  said.place = Eigen::Vector3d(1.0, 2.0, 0.0);
+  said.place = {1.0F, 2.0F, 0.0F};
   directory.on_capabilities(said, now + 1s);
   EXPECT_TRUE(find("op1")->has_capabilities);
   EXPECT_EQ(find("op1")->place, said.place);
@@ -205,7 +205,7 @@ TEST_F(PeerTableTest, NamesakesAreEntriesOfTheirOwnAndBounded) {
 TEST_F(PeerTableTest, IsShownToPeopleWithAgesAndPlaces) {
   EXPECT_EQ(describe(peers, now), "no peers\n");
   Peer station = peer("op1", 1, true);
-  station.place = Eigen::Vector3d(1.0, 2.0, 0.5);
+  station.place = {1.0F, 2.0F, 0.5F};
   directory.on_capabilities(station, now);
   peers.set_holder("op1", id_of("op1"));
   Peer robot = peer("r2", 2);
