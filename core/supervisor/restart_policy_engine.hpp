@@ -8,20 +8,13 @@
 
 #include "core/exec/processor_use.hpp"
 #include "core/result/result.hpp"
+#include "core/supervisor/part_state.hpp"
 #include "core/time/time.hpp"
 
 namespace adit {
 
 /// The party that restarts a component that failed or hangs.
 enum class RestartPolicy : std::uint8_t { automatic, by_operator };
-
-enum class PartState : std::uint8_t {
-  starting,  ///< Ordered; its loop has not reported yet.
-  up,
-  waiting,  ///< Failed; restarts after the backoff delay.
-  failed,   ///< Failed; waits for the operator.
-  hung      ///< Does not return; waits for the operator.
-};
 
 struct SupervisionParams {
   Duration period{50ms};  ///< Period of the heartbeat checks, [10 ms, 500 ms].

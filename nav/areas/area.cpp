@@ -47,16 +47,6 @@ double size_of(const std::vector<Eigen::Vector2d>& corners) {
 
 }  // namespace
 
-bool Area::contains(const Eigen::Vector2d& place) const {
-  bool inside = false;
-  for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
-    const Eigen::Vector2d &a = corners[i], &b = corners[j];
-    if ((a.y() > place.y()) == (b.y() > place.y())) continue;
-    if (place.x() < a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
-  }
-  return inside;
-}
-
 Result<Area> checked(Area area) {
   const auto refuse = [&](const char* why) -> Result<Area> {
     return {Reason::bad_argument, "area " + area.name + ": " + why};

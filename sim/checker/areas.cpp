@@ -40,8 +40,8 @@ class AreasAreHard : public Rule {
   void add(const CommandHeard& command) {
     if (command.words.size() < 2) return;
     nav::Area area{.name = command.words[0], .kind = nav::AreaKind::prefer};
-    if (command.words[1] == nav::name(nav::AreaKind::keep_in)) area.kind = nav::AreaKind::keep_in;
-    if (command.words[1] == nav::name(nav::AreaKind::keep_out)) area.kind = nav::AreaKind::keep_out;
+    if (command.words[1] == name(nav::AreaKind::keep_in)) area.kind = nav::AreaKind::keep_in;
+    if (command.words[1] == name(nav::AreaKind::keep_out)) area.kind = nav::AreaKind::keep_out;
     std::vector<double> numbers = command.numbers;
     if ((command.options & 2U) != 0 && !numbers.empty()) numbers.pop_back();  // The weight.
     if ((command.options & 1U) != 0 && numbers.size() >= 2) {
