@@ -107,13 +107,19 @@ inline bool is_clean(const std::string& text, std::size_t max) {
   return text.size() <= max && command::clean(text, max) == text;
 }
 
+/// The bytes of a sample as they are sent.
+template <class T>
+std::vector<std::uint8_t> serialised(const T& sample) {
+  std::vector<std::uint8_t> bytes;
+  wire::encode(sample, bytes);
+  return bytes;
+}
+
 /// The sample after serialisation and deserialisation.
 template <class T>
 T through_cdr(const T& sample) {
-  std::vector<std::uint8_t> bytes;
-  wire::encode(sample, bytes);
   T out;
-  EXPECT_TRUE(wire::decode(bytes, out));
+  EXPECT_TRUE(wire::decode(serialised(sample), out));
   return out;
 }
 
