@@ -299,12 +299,11 @@ StateKeeper::Outputs Agent::Impl::keeper_outputs() {
                                params.name + " cannot keep its state over a restart: " + text});
     else
       context->notifier->send({{}, Severity::info, "store_works", Reason::none, params.name + ": " + text});
-    ComponentRow row{.name = "store", .healthy = !failing};
-    if (failing) {
-      row.state = PartState::failed;
-      row.text = "the disk does not keep the state";
-    }
-    watch->note(row);
+    watch->note({.name = "store",
+                 .state = failing ? PartState::failed : PartState::up,
+                 .healthy = !failing,
+                 .automatic = true,
+                 .text = failing ? "the disk does not keep the state" : ""});
   }};
 }
 

@@ -392,10 +392,11 @@ RightOfWay::Outputs Agent::CommandComponent::right_of_way_outputs() {
           [this](const Notice& notice) { notices_.send_to_holder(notice); }};
 }
 
-FollowedRoute Agent::CommandComponent::followed_route(Time at) const {
+contract::Route Agent::CommandComponent::followed_route(Time at) const {
   const nav::RouteStep* step = navigation_.followed_route(at);
   if (!step || !frames_.initialised()) return {};
-  FollowedRoute route{behaviour_.view().goal_id, step->corners, {}, step->unknown_ahead};
+  contract::Route route{
+      .goal_id = behaviour_.view().goal_id, .corners = step->corners, .unknown = step->unknown_ahead};
   for (const Eigen::Vector3d& point : step->ahead) route.points.push_back(frames_.to_map(point));
   return route;
 }
@@ -486,12 +487,12 @@ std::string Agent::CommandComponent::at_console(const std::string& line) {
                               "' is no command of the console (status, unlock, peers, health, restart "
                               "COMPONENT, policy COMPONENT auto|manual)");
   const Authority& authority = commands_.authority();
-  const BehaviourView view = behaviour_.view();
+  const contract::BehaviourState view = behaviour_.view();
   return params_.name + ": " +
          (authority.holder() ? "held by " + authority.holder_name() : "held by nobody") +
          (authority.locked() ? ", locked" : "") + (commands_.stops().any() ? ", stopped" : "") + ", mode " +
-         std::string(view.mode) +
-         (view.reason == Reason::none ? "" : " (" + std::string(adit::name(view.reason)) + ")") + "\n";
+         view.mode + (view.reason == Reason::none ? "" : " (" + std::string(adit::name(view.reason)) + ")") +
+         "\n";
 }
 
 }  // namespace adit::agent

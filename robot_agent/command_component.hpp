@@ -119,7 +119,7 @@ class Agent::CommandComponent : public Component {
   /// Standard deviation of the position, m; infinite: the robot does not know where it is.
   double place_sigma() const;
   /// The route that the robot follows at this time.
-  FollowedRoute followed_route(Time at) const;
+  contract::Route followed_route(Time at) const;
   /// Notifies the holder when the odometry becomes weak or lost, and when it is well again.
   void watch_localisation(Time at);
   StoredFrames stored_place() const;

@@ -146,7 +146,7 @@ void Agent::CommandComponent::send_content() {
     context_.map->follow(frames_.map_frame());
     if (context_.map->is_behind() && now() - looked_ahead_ >= kLookAhead) {
       looked_ahead_ = now();
-      FollowedRoute route = followed_route(now());
+      contract::Route route = followed_route(now());
       if (route.points.empty()) route.points.push_back(frames_.to_map(frames_.T_odom_base().position));
       context_.map->look_ahead(route.points);
     }

@@ -97,9 +97,9 @@ Result<ExploreOutcome> run(const ExploreCourse& course, const sim::AgentFactory&
   params.workers = 1;
   params.make_agent = agents;
   params.ended = [&out](const sim::RunState& state) {
-    const auto is = static_cast<agent::ExplorationState>(state.witness.word("r1").exploration);
-    if (is == agent::ExplorationState::done) out.done = seconds(state.now) - kAsked;
-    return is == agent::ExplorationState::done || is == agent::ExplorationState::ended;
+    const auto is = static_cast<contract::ExplorationPhase>(state.witness.word("r1").exploration);
+    if (is == contract::ExplorationPhase::done) out.done = seconds(state.now) - kAsked;
+    return is == contract::ExplorationPhase::done || is == contract::ExplorationPhase::ended;
   };
   const auto done = sim::rehearse(*scenario, *world, params);
   if (!done) return done.error();

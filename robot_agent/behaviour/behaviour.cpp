@@ -348,9 +348,9 @@ void Behaviour::tick(Time now) {
     if (current->progress(passes).finished) return hold(Reason::none, now);
   }
   watch(now);
-  BehaviourView is = view();
+  contract::BehaviourState is = view();
   // The numbers of an exploration change with every scan; they are sent once a second.
-  is.exploration = {.state = is.exploration.state, .reason = is.exploration.reason};
+  is.exploration = {.phase = is.exploration.phase, .reason = is.exploration.reason};
   if (is != told_) {
     told_ = is;
     outputs_.changed();
@@ -392,23 +392,23 @@ ModeProgress Behaviour::progress() const {
   return best;
 }
 
-BehaviourView Behaviour::view() const {
+contract::BehaviourState Behaviour::view() const {
   const ModeProgress p = progress();
-  BehaviourView v;
+  contract::BehaviourState v;
   v.mode = decision_.mode->name;
   v.stopped = stopped_;
   v.moving_allowed = decision_.runs && decision_.mode->moves();
   v.goal_state = p.state;
   v.goal_id = p.goal_id;
   v.goal = p.goal;
-  v.areas = areas_;
+  v.areas.assign(areas_.all().begin(), areas_.all().end());
   if (inputs_.convoy) v.convoy = inputs_.convoy->order();
   if (const RightOfWay* way = inputs_.right_of_way) {
     v.yields = way->allowed();
     v.yields_to = way->yields_to();
   }
   for (const Mode& mode : modes_)
-    if (mode.module && v.exploration.state == ExplorationState::none)
+    if (mode.module && v.exploration.phase == contract::ExplorationPhase::none)
       v.exploration = mode.module->progress(false).exploration;
   v.reason = stopped_                           ? Reason::stopped
              : p.state == GoalState::blocked    ? p.reason
@@ -418,12 +418,13 @@ BehaviourView Behaviour::view() const {
   return v;
 }
 
-std::vector<ModeOption> Behaviour::options(Time now) const {
+std::vector<contract::ModeOption> Behaviour::options(Time now) const {
   const Facts f = facts(now);
-  std::vector<ModeOption> all;
+  std::vector<contract::ModeOption> all;
   for (const ModeRow& row : table().rows()) {
-    const Reason reason = not_run(row);
-    all.push_back({row.name, reason != Reason::none ? reason : entry_refusal(row, f)});
+    Reason reason = not_run(row);
+    if (reason == Reason::none) reason = entry_refusal(row, f);
+    all.push_back({std::string(row.name), reason == Reason::none, reason});
   }
   return all;
 }

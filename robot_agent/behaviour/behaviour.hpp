@@ -14,29 +14,6 @@
 
 namespace adit::agent {
 
-/// A mode and whether it could be entered now.
-struct ModeOption {
-  std::string_view mode{};
-  Reason reason{Reason::none};  ///< `none`: available.
-  bool operator==(const ModeOption&) const = default;
-};
-
-struct BehaviourView {
-  std::string_view mode{"hold"};
-  bool stopped{};
-  bool moving_allowed{};
-  Reason reason{Reason::none};  ///< Why the robot does not move.
-  GoalState goal_state{GoalState::none};
-  std::uint32_t goal_id{};
-  Eigen::Vector3d goal{Eigen::Vector3d::Zero()};
-  std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
-  bool yields{};                      ///< The holder allowed the robot to make way.
-  std::string yields_to{};            ///< The robot for which it makes way; empty: none.
-  ExplorationView exploration{};
-  nav::AreaSet areas{};  ///< Map frame.
-  bool operator==(const BehaviourView&) const = default;
-};
-
 struct BehaviourParams {
   Duration idle_after{60s};  ///< Time in hold, or at the goal, after which the holder is notified.
 };
@@ -122,9 +99,10 @@ class Behaviour : public Requests {
   /// Runs one cycle: at 20 Hz, and from the calls above.
   void tick(Time now);
   void set_progress(const Progress& progress);
-  BehaviourView view() const;
+  /// The state as stations receive it, without the robot's name and the options.
+  contract::BehaviourState view() const;
   /// Every mode of the table, and whether it could be entered now.
-  std::vector<ModeOption> options(Time now) const;
+  std::vector<contract::ModeOption> options(Time now) const;
   const ModeRow& mode() const { return *decision_.mode; }
   const ModeTable& table() const { return decider_->table(); }
   /// Why the behaviour tree was refused; empty: the tree runs.
@@ -168,7 +146,7 @@ class Behaviour : public Requests {
   bool listens_{};
   Stick stick_{};
   nav::AreaSet areas_{};
-  BehaviourView told_{};  ///< The view when changed() was called last.
+  contract::BehaviourState told_{};  ///< The view when changed() was called last.
   Time idle_since_{};
   bool idle_told_{}, begun_{};
   std::uint64_t holder_requests_{};

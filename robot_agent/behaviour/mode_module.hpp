@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include "core/contract/robot.hpp"
 #include "nav/explore/explorer.hpp"
 #include "robot_agent/behaviour/facts.hpp"
 #include "robot_agent/command/types.hpp"
@@ -18,7 +19,7 @@ class RightOfWay;
 
 using contract::kFarthestPlace;
 
-enum class GoalState : std::uint8_t { none, kept, active, blocked, reached };
+using contract::GoalState;
 
 /// A mode's goal and the robot's progress towards it, and what else the mode reports.
 struct ModeProgress {
@@ -28,7 +29,7 @@ struct ModeProgress {
   Reason reason{Reason::none};                    ///< Why it is blocked.
   bool finished{};                                ///< Nothing is left to do: the robot changes to hold.
   Progress navigation{};                          ///< Navigation's progress, of `get_out`.
-  ExplorationView exploration{};                  ///< Of a mode that explores.
+  contract::Exploration exploration{};            ///< Of a mode that explores.
 };
 
 /// The context passed to a mode's module on construction.

@@ -3,9 +3,9 @@
 
 #include <mutex>
 
+#include "adit/robot.h"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
-#include "robot_agent/radio/convert.hpp"
 
 namespace adit::agent {
 
@@ -15,10 +15,11 @@ struct Notifier::Endpoint {
   std::mutex mutex{};  // Guards the members below.
   wire::Writer<radio::Notification> writer{};
   std::uint64_t seq{};
-  void write(const Notice& notice) {
-    auto sample = to_radio(notice, robot);
+  void write(Notice notice) {
+    notice.robot = robot;
+    notice.stamp = to_stamp(clock->now());
+    radio::Notification sample = encode(notice);
     sample.seq(++seq);
-    sample.stamp(to_stamp(clock->now()));
     (void)writer.write(sample);
   }
 };

@@ -2,7 +2,6 @@
 #include "robot_agent/radio/radio_edge.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
@@ -14,9 +13,9 @@
 #include "core/contract/bulk.hpp"
 #include "core/wire/component_io.hpp"
 #include "core/wire/link/peer_meter.hpp"
+#include "core/wire/link/traffic_meter.hpp"
 #include "core/wire/topics.hpp"
 #include "robot_agent/radio/convert.hpp"
-#include "robot_agent/radio/link_meter.hpp"
 
 namespace adit::agent {
 
@@ -30,7 +29,7 @@ struct RadioEdge::Endpoints {
   std::string robot;
   wire::Participant& wire{io.wire};
   Executor& strand{io.strand};
-  LinkMeter meter{};
+  wire::TrafficMeter meter{1s};
   std::uint64_t seq{};
 
   wire::Writer<radio::Acknowledgement> acknowledgement{};
@@ -50,7 +49,6 @@ struct RadioEdge::Endpoints {
   contract::Capabilities capabilities_sample{};
   wire::PeerMeter stations{};  // Quality of the link from each station.
   Timer presence_timer{};
-  radio::RobotState state_sample{};
   std::uint64_t malformed_beacons{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
   /// A command whose goal is being judged: since when, and how many samples of it wait for the answer.
@@ -78,11 +76,6 @@ struct RadioEdge::Endpoints {
 };
 
 namespace {
-
-/// As a RobotState has it.
-std::int16_t milliradians(double angle) {
-  return static_cast<std::int16_t>(std::lround(std::clamp(1000.0 * angle, -3200.0, 3200.0)));
-}
 
 /// Whether the command is a goto with valid arguments.
 bool asks_for_goal(const Command& command) {
@@ -295,32 +288,20 @@ void RadioEdge::send_authority(const CommandInterface& commands, Time now) {
   endpoints_->send(endpoints_->authority, encode(status_of(commands, endpoints_->robot, now)));
 }
 
-void RadioEdge::send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options) {
-  endpoints_->send(endpoints_->behaviour, to_radio(view, options, endpoints_->robot));
+void RadioEdge::send_behaviour(contract::BehaviourState state) {
+  state.robot = endpoints_->robot;
+  endpoints_->send(endpoints_->behaviour, encode(state));
 }
 
-void RadioEdge::send_state(const RobotReport& report, std::uint64_t stamp) {
-  radio::RobotState& s = endpoints_->state_sample;
-  s.robot(endpoints_->robot);
-  s.stamp(stamp);
-  s.x(static_cast<float>(report.pose.x));
-  s.y(static_cast<float>(report.pose.y));
-  s.z(static_cast<float>(report.z));
-  s.yaw(static_cast<float>(report.pose.yaw));
-  s.vx(static_cast<float>(report.twist.vx));
-  s.vy(static_cast<float>(report.twist.vy));
-  s.wz(static_cast<float>(report.twist.wz));
-  s.battery(report.battery);
-  constexpr double kMaxSigma = 65.535;  // m
-  s.sigma(static_cast<std::uint16_t>(std::lround(std::clamp(report.sigma, 0.0, kMaxSigma) * 1000.0)));
-  s.tilt({milliradians(report.roll), milliradians(report.pitch)});
-  s.localisation(static_cast<std::uint8_t>(report.localisation));
-  s.map_revision(report.map_revision);
-  (void)endpoints_->state.write(s);
+void RadioEdge::send_state(contract::RobotState state) {
+  state.robot = endpoints_->robot;
+  (void)endpoints_->state.write(encode(state));
 }
 
-void RadioEdge::send_route(const FollowedRoute& route) {
-  if (endpoints_->route) endpoints_->send(endpoints_->route, to_radio(route, endpoints_->robot));
+void RadioEdge::send_route(contract::Route route) {
+  if (!endpoints_->route) return;
+  route.robot = endpoints_->robot;
+  endpoints_->send(endpoints_->route, encode(route));
 }
 
 void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol,
@@ -344,22 +325,17 @@ void RadioEdge::send_claim(const std::optional<Namesakes::Claim>& claim) {
 
 void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed, double state_rate) {
   Endpoints& e = *endpoints_;
-  radio::LinkReport report = e.meter.report(e.wire.counters(), e.wire.sender(), e.robot, now);
-  report.state_rate(static_cast<float>(state_rate));
-  report.malformed(report.malformed() + static_cast<std::uint32_t>(inner_malformed + e.malformed_beacons));
-  constexpr std::size_t kPeers = 16;    // The contract's maximum.
+  contract::LinkReport report = e.meter.read(e.robot, e.wire.counters(), e.wire.sender(), now);
+  report.state_rate = state_rate;
+  report.malformed += static_cast<std::uint32_t>(inner_malformed + e.malformed_beacons);
   constexpr Duration kForgotten = 60s;  // A station that was silent for longer has no link.
   for (const wire::PeerMeter::Peer& peer : e.stations.peers(now)) {
-    if (peer.held > kForgotten) e.stations.forget(peer.name);
-    if (peer.held > kForgotten || report.peers().size() == kPeers) continue;
-    radio::PeerLink link;
-    link.peer(peer.name);
-    link.number(peer.number);
-    link.held(static_cast<float>(seconds(peer.held)));
-    link.lost(peer.lost);
-    report.peers().push_back(link);
+    if (peer.held > kForgotten)
+      e.stations.forget(peer.name);
+    else
+      report.peers.push_back({peer.name, peer.number, seconds(peer.held), peer.lost});
   }
-  e.send(e.link, std::move(report));
+  e.send(e.link, encode(report));
 }
 
 }  // namespace adit::agent

@@ -4,13 +4,12 @@
 #include <memory>
 #include <string>
 
-#include "core/config/perception_level.hpp"
 #include "core/config/platform.hpp"
+#include "core/contract/robot.hpp"
 #include "core/transfer/piece.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/carry/carrier.hpp"
 #include "robot_agent/command/command_interface.hpp"
-#include "robot_agent/common/followed_route.hpp"
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/discovery/namesakes.hpp"
 
@@ -19,18 +18,6 @@ struct ComponentIo;
 }
 
 namespace adit::agent {
-
-/// The state of the robot that is sent at 10 Hz.
-struct RobotReport {
-  Pose2 pose{};            ///< Map frame.
-  double z{};              ///< m
-  Twist2 twist{};          ///< Body frame.
-  float battery{-1.0};     ///< State of charge, [0, 1]; negative: unknown.
-  double sigma{};          ///< Standard deviation of the position, m; 0 with Localisation::off.
-  double roll{}, pitch{};  ///< Of the body, rad (REP-103).
-  Localisation localisation{Localisation::off};
-  std::uint8_t map_revision{};  ///< Changes when the place in the map was corrected.
-};
 
 /// The agent's readers and writers on the radio domain. Passes received messages to the command interface and
 /// the directory, and numbers and sends the agent's messages. Runs on the command strand.
@@ -75,10 +62,11 @@ class RadioEdge {
   void close();
 
   void send_authority(const CommandInterface& commands, Time now);
-  void send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options);
-  void send_state(const RobotReport& report, std::uint64_t stamp);
+  /// Sends a message of this robot; its name is set here.
+  void send_behaviour(contract::BehaviourState state);
+  void send_state(contract::RobotState state);
   /// Sends the followed route; nothing before send_capabilities(), and for a platform without router.
-  void send_route(const FollowedRoute& route);
+  void send_route(contract::Route route);
   /// Sends a beacon to the other robots.
   void send(const TeamBeacon& beacon);
   /// Sends a piece of content to the stations, or to the carriers. `session`: of the sender.

@@ -5,11 +5,14 @@
 #include <cstdio>
 #include <deque>
 
+#include "adit/robot.h"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
-#include "robot_agent/supervisor/health_message.hpp"
 
 namespace adit::agent {
+
+using contract::ComponentHealth;
+
 namespace {
 
 constexpr Duration kHealthPeriod = 5s;
@@ -17,22 +20,6 @@ constexpr Duration kHealthPeriod = 5s;
 constexpr Duration kCommandSilent = 120ms;
 constexpr Duration kLastWords = 100ms;  // Time for the notification of an escalated failure.
 constexpr const char* kAgent = "agent";
-
-std::string_view word(PartState state) {
-  switch (state) {
-    case PartState::starting:
-      return "starting";
-    case PartState::up:
-      return "up";
-    case PartState::waiting:
-      return "waiting";
-    case PartState::failed:
-      return "failed";
-    case PartState::hung:
-      return "hung";
-  }
-  return "failed";
-}
 
 }  // namespace
 
@@ -75,25 +62,25 @@ class AgentSupervisor::Impl {
     return {Reason::bad_argument, part + " is no component of the agent; " + verb + " takes " + names};
   }
 
-  void note(ComponentRow row) {
+  void note(ComponentHealth row, std::optional<Time> heard) {
     const auto known =
-        std::find_if(notes_.begin(), notes_.end(), [&](const ComponentRow& r) { return r.name == row.name; });
+        std::find_if(notes_.begin(), notes_.end(), [&](const Note& n) { return n.row.name == row.name; });
     if (known != notes_.end())
-      *known = std::move(row);
+      *known = {std::move(row), heard};
     else if (notes_.size() < kNotes)
-      notes_.push_back(std::move(row));
+      notes_.push_back({std::move(row), heard});
     changed_ = true;
   }
 
-  std::vector<ComponentRow> rows() const {
-    std::vector<ComponentRow> rows;
+  std::vector<ComponentHealth> rows() const {
+    std::vector<ComponentHealth> rows;
     for (const PartStatus& s : supervisor_.status())
       rows.push_back({s.spec.name, s.state, s.state == PartState::up,
-                      s.spec.policy == RestartPolicy::automatic, std::nullopt, s.silent, s.restarts, s.hangs,
-                      s.text});
-    for (ComponentRow row : notes_) {
-      if (row.heard) row.silent = strand_.now() - *row.heard;
-      rows.push_back(std::move(row));
+                      s.spec.policy == RestartPolicy::automatic, static_cast<float>(seconds(s.silent)),
+                      s.restarts, s.hangs, s.text});
+    for (const Note& note : notes_) {
+      rows.push_back(note.row);
+      if (note.heard) rows.back().silent_for = static_cast<float>(seconds(strand_.now() - *note.heard));
     }
     return rows;
   }
@@ -111,6 +98,11 @@ class AgentSupervisor::Impl {
   }
 
  private:
+  /// The state of a part of the robot that is not one of the supervisor's components.
+  struct Note {
+    ComponentHealth row{};
+    std::optional<Time> heard{};
+  };
   static constexpr std::size_t kNotes = 16;
   static constexpr std::size_t kUnsaid = 32;
 
@@ -147,7 +139,7 @@ class AgentSupervisor::Impl {
     if (!changed_ && now - sent_ < kHealthPeriod) return;
     changed_ = false;
     sent_ = now;
-    auto sample = to_radio(rows(), params_.robot);
+    radio::Health sample = encode(contract::Health{params_.robot, rows()});
     sample.seq(++seq_);
     (void)health_.write(sample);
   }
@@ -159,7 +151,7 @@ class AgentSupervisor::Impl {
   wire::Writer<radio::Health> health_{};
   VelocityWriter zero_{};
   std::vector<PartSpec> specs_{};  // Constant after the start: read from any thread.
-  std::vector<ComponentRow> notes_{};
+  std::vector<Note> notes_{};
   std::deque<Notice> unsaid_{};
   std::uint64_t seq_{};
   bool changed_{true};
@@ -186,8 +178,8 @@ void AgentSupervisor::start() {
 
 void AgentSupervisor::stop() { impl_->supervisor().stop(); }
 
-void AgentSupervisor::note(ComponentRow row) {
-  impl_->strand().post([impl = impl_.get(), row = std::move(row)] { impl->note(row); });
+void AgentSupervisor::note(ComponentHealth row, std::optional<Time> heard) {
+  impl_->strand().post([impl = impl_.get(), row = std::move(row), heard] { impl->note(row, heard); });
 }
 
 Result<void> AgentSupervisor::restart(const std::string& component) {
@@ -222,15 +214,14 @@ Result<void> AgentSupervisor::set_policy(const std::string& component, bool auto
 void AgentSupervisor::describe(std::function<void(const std::string&)> answer) {
   impl_->strand().post([impl = impl_.get(), answer = std::move(answer)] {
     std::string text;
-    for (const ComponentRow& row : impl->rows()) {
+    for (const ComponentHealth& row : impl->rows()) {
       char line[320];
       std::snprintf(line, sizeof line, "%-10s %-9s %-5s restarts %u, hung %u, silent %.1f s%s%s\n",
-                    row.name.c_str(), word(row.state).data(),
+                    row.name.c_str(), name(row.state).data(),
                     !impl->find(row.name) ? "-"
                     : row.automatic       ? "auto"
                                           : "manual",
-                    row.restarts, row.hung, seconds(row.silent), row.text.empty() ? "" : ": ",
-                    row.text.c_str());
+                    row.restarts, row.hung, row.silent_for, row.text.empty() ? "" : ": ", row.text.c_str());
       text += line;
     }
     answer(text);

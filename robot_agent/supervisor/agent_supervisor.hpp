@@ -2,13 +2,14 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/contract/robot.hpp"
 #include "core/supervisor/supervisor.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/radio/notifier.hpp"
-#include "robot_agent/supervisor/component_row.hpp"
 
 namespace adit::agent {
 
@@ -47,7 +48,7 @@ class AgentSupervisor {
   // Callable from any thread:
 
   /// Adds a line of the health report for a part that is no component, or replaces the line of that name.
-  void note(ComponentRow row);
+  void note(contract::ComponentHealth row, std::optional<Time> heard = {});
   /// Restarts a component on the operator's request; "agent" restarts all. Errors: bad_argument,
   /// not_supported.
   Result<void> restart(const std::string& component);

@@ -20,7 +20,7 @@ double distance_to(const Points& line, const Eigen::Vector3d& point) {
   return nearest;
 }
 
-double unknown_length(const FollowedRoute& route) {
+double unknown_length(const contract::Route& route) {
   double length = 0.0;
   for (std::size_t i = 0; i + 1 < route.points.size(); ++i)
     if ((route.unknown >> i & 1U) != 0) length += (route.points[i + 1] - route.points[i]).norm();
@@ -29,7 +29,7 @@ double unknown_length(const FollowedRoute& route) {
 
 }  // namespace
 
-bool RouteReport::due(const FollowedRoute& route, Time now, double stretch) {
+bool RouteReport::due(const contract::Route& route, Time now, double stretch) {
   const bool none = route.corners == 0, had_none = sent_.corners == 0;
   if (none && had_none) return false;
   // Only another goal is sent at once; a route may be lost and found many times in a second.

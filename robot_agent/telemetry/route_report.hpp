@@ -2,8 +2,8 @@
 #pragma once
 #include <optional>
 
+#include "core/contract/robot.hpp"
 #include "core/time/time.hpp"
-#include "robot_agent/common/followed_route.hpp"
 
 namespace adit::agent {
 
@@ -17,10 +17,10 @@ class RouteReport {
 
   /// Whether to send `route` now; it then counts as sent. `stretch`: the periods are this many times as long,
   /// for thin links.
-  bool due(const FollowedRoute& route, Time now, double stretch = 1.0);
+  bool due(const contract::Route& route, Time now, double stretch = 1.0);
 
  private:
-  FollowedRoute sent_{};
+  contract::Route sent_{};
   double sent_unknown_{};  ///< Length of its legs through unknown space, m.
   std::optional<Time> sent_at_{};
 };

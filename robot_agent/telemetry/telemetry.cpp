@@ -31,19 +31,25 @@ void Telemetry::send_state(Time now, float charge, Localisation localisation, do
   const Frames& at = dependencies_.frames;
   // Odometry frame and map are level to each other.
   const Eigen::Vector3d up = at.T_odom_base().orientation.conjugate() * Eigen::Vector3d::UnitZ();
-  dependencies_.radio.send_state({.pose = at.T_map_base(),
-                                  .z = at.height(),
-                                  .twist = at.initialised() ? at.twist() : Twist2{},
+  const Pose2 pose = at.T_map_base();
+  const Twist2 twist = at.initialised() ? at.twist() : Twist2{};
+  dependencies_.radio.send_state({.stamp = stamp,
+                                  .x = static_cast<float>(pose.x),
+                                  .y = static_cast<float>(pose.y),
+                                  .z = static_cast<float>(at.height()),
+                                  .yaw = static_cast<float>(pose.yaw),
+                                  .vx = static_cast<float>(twist.vx),
+                                  .vy = static_cast<float>(twist.vy),
+                                  .wz = static_cast<float>(twist.wz),
                                   .battery = charge,
                                   .sigma = sigma,
                                   .roll = std::atan2(up.y(), up.z()),
                                   .pitch = std::atan2(-up.x(), std::hypot(up.y(), up.z())),
                                   .localisation = localisation,
-                                  .map_revision = static_cast<std::uint8_t>(at.map_epoch())},
-                                 stamp);
+                                  .map_revision = static_cast<std::uint8_t>(at.map_epoch())});
 }
 
-void Telemetry::send_route(Time now, const FollowedRoute& route) {
+void Telemetry::send_route(Time now, const contract::Route& route) {
   if (route_report_.due(route, now, dependencies_.rate.stretch())) dependencies_.radio.send_route(route);
 }
 
@@ -62,7 +68,9 @@ void Telemetry::send_periodic(Time now) {
 void Telemetry::send_authority(Time now) { dependencies_.radio.send_authority(dependencies_.commands, now); }
 
 void Telemetry::send_behaviour(Time now) {
-  dependencies_.radio.send_behaviour(dependencies_.behaviour.view(), dependencies_.behaviour.options(now));
+  contract::BehaviourState state = dependencies_.behaviour.view();
+  state.options = dependencies_.behaviour.options(now);
+  dependencies_.radio.send_behaviour(std::move(state));
 }
 
 bool Telemetry::driver_fell_silent(Time now) {
@@ -75,17 +83,17 @@ bool Telemetry::driver_fell_silent(Time now) {
 
 void Telemetry::report_driver(Time now) {
   const bool alive = dependencies_.frames.alive(now);
-  ComponentRow driver{};
-  driver.name = "driver";
-  driver.healthy = alive;
+  contract::ComponentHealth driver{
+      .name = "driver", .state = PartState::up, .healthy = alive, .automatic = true};
+  std::optional<Time> heard{};
   if (!alive) {
     // A driver that was never present has not failed.
     const bool was_present = dependencies_.frames.initialised();
     driver.state = was_present ? PartState::failed : PartState::starting;
-    driver.heard = now - dependencies_.frames.silence(now, started_);
+    heard = now - dependencies_.frames.silence(now, started_);
     driver.text = was_present ? "no odometry" : "no odometry since the start of the agent";
   }
-  dependencies_.watch.note(driver);
+  dependencies_.watch.note(driver, heard);
 }
 
 }  // namespace adit::agent

@@ -38,7 +38,7 @@ class Telemetry {
   /// [0, 1], negative while unknown; `sigma`: of the position, m.
   void send_state(Time now, float charge, Localisation localisation, double sigma);
   /// Sends the followed route when stations must see another one than before. At 10 Hz.
-  void send_route(Time now, const FollowedRoute& route);
+  void send_route(Time now, const contract::Route& route);
   /// Repeats the status for stations that joined late, and reports on the link. Once a second.
   void send_periodic(Time now);
   void send_authority(Time now);

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "robot_agent/common/exploration.hpp"
+#include "core/contract/robot.hpp"
 
 namespace adit::sim {
 namespace {
@@ -38,7 +38,7 @@ std::string mismatch(const StateExpectation& e, const Evidence& evidence) {
     say(word.authority.locked ? "it is locked" : "it is not locked");
   if (e.stopped && word.stopped != *e.stopped) say(word.stopped ? "it is stopped" : "it is not stopped");
   if (e.explore) {
-    const auto state = agent::name(static_cast<agent::ExplorationState>(word.exploration));
+    const std::string_view state = to_string(static_cast<contract::ExplorationPhase>(word.exploration));
     const bool same = state == *e.explore || (*e.explore == "exploring" && state == "travelling");
     if (!same) say("its exploration is " + std::string(state));
   }

@@ -34,7 +34,7 @@ class BehaviourTest : public testing::Test {
     run(100ms);
     ASSERT_TRUE(behaviour.request_mode(mode, now));
   }
-  std::string_view mode() const { return behaviour.view().mode; }
+  std::string mode() const { return behaviour.view().mode; }
   std::vector<std::string> codes() const {
     std::vector<std::string> all;
     for (const Notice& n : told) all.push_back(n.code);
@@ -368,7 +368,7 @@ TEST_F(BehaviourTest, UnknownModesAreRefused) {
 
 TEST_F(BehaviourTest, OptionsTellWhyNot) {
   const auto option = [&](std::string_view wanted) {
-    for (const ModeOption& o : behaviour.options(now))
+    for (const contract::ModeOption& o : behaviour.options(now))
       if (o.mode == wanted) return o.reason;
     return Reason::internal;
   };
@@ -435,19 +435,21 @@ TEST_F(AreasOfBehaviour, WhatIsMalformedOrForbidsThePlaceOfTheRobotIsRefused) {
   EXPECT_EQ(add("c", prefer, {{5, 5}, {6, 6}}), Reason::none);
   EXPECT_EQ(robot->remove_area("d", now).reason(), Reason::bad_argument);
   EXPECT_EQ(robot->remove_area("c", now).reason(), Reason::none);
-  EXPECT_EQ(robot->view().areas.all().size(), 2U);
+  EXPECT_EQ(robot->view().areas.size(), 2U);
 }
 
 TEST_F(AreasOfBehaviour, AreReportedAndStored) {
   const int before = changes;
   ASSERT_EQ(add("shaft", nav::AreaKind::keep_out, {{5, 5}, {6, 6}}), Reason::none);
   EXPECT_GT(changes, before);
-  EXPECT_TRUE(robot->view().areas.find("shaft"));
+  ASSERT_EQ(robot->view().areas.size(), 1U);
+  EXPECT_EQ(robot->view().areas[0].name, "shaft");
   const KeptBehaviour kept = robot->kept();
   EXPECT_TRUE(kept.areas.find("shaft"));
   ASSERT_TRUE(robot->remove_area("shaft", now));
   robot->restore(kept, false, true);
-  EXPECT_TRUE(robot->areas().find("shaft"));
+  ASSERT_EQ(robot->view().areas.size(), 1U);
+  EXPECT_EQ(robot->view().areas[0].name, "shaft");
 }
 
 TEST_F(AreasOfBehaviour, AGoalOutsideIsRefusedAlsoAStoredOne) {

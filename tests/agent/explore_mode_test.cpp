@@ -9,6 +9,8 @@
 namespace adit::agent {
 namespace {
 
+using contract::ExplorationPhase;
+
 struct ExploreNavigation : NavigationInput {
   void accept(MuxKey, const Motion& motion, Time) override { last = motion; }
   Motion last{};
@@ -33,7 +35,7 @@ class ExploreModeTest : public testing::Test {
     const auto* go = std::get_if<GoTo>(&nav.last);
     return go ? Eigen::Vector2d(go->goal.head<2>()) : Eigen::Vector2d(-1, -1);
   }
-  ExplorationState state() const { return behaviour.view().exploration.state; }
+  ExplorationPhase phase() const { return behaviour.view().exploration.phase; }
   Behaviour::Inputs inputs() {
     Behaviour::Inputs in{[this](Time) { return facts; }, [](const Eigen::Vector2d&) { return true; }};
     in.pose = [this] { return std::optional(at); };
@@ -71,16 +73,16 @@ class ExploreModeTest : public testing::Test {
 
 TEST_F(ExploreModeTest, DrivesFromPlaceToPlaceAndHoldsWhenNothingIsLeft) {
   ASSERT_TRUE(behaviour.request_explore({}, now));
-  EXPECT_EQ(state(), ExplorationState::starting);
+  EXPECT_EQ(phase(), ExplorationPhase::starting);
   see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
   EXPECT_EQ(target(), Eigen::Vector2d(8, 5));
-  EXPECT_EQ(state(), ExplorationState::exploring);
+  EXPECT_EQ(phase(), ExplorationPhase::exploring);
   EXPECT_FLOAT_EQ(behaviour.view().exploration.share, 0.5f);
   see(nav::ExploreState::exploring, Eigen::Vector3d(40, 5, 0));
   EXPECT_EQ(target(), Eigen::Vector2d(40, 5));
-  EXPECT_EQ(state(), ExplorationState::travelling);
+  EXPECT_EQ(phase(), ExplorationPhase::travelling);
   see(nav::ExploreState::done);
-  EXPECT_EQ(state(), ExplorationState::done);
+  EXPECT_EQ(phase(), ExplorationPhase::done);
   EXPECT_EQ(behaviour.view().mode, "hold");
   EXPECT_EQ(nav.last, Motion{Stand{}});
   ASSERT_EQ(told.size(), 1u);
@@ -91,7 +93,7 @@ TEST_F(ExploreModeTest, DrivesFromPlaceToPlaceAndHoldsWhenNothingIsLeft) {
 TEST_F(ExploreModeTest, WithoutAnyViewpointItIsNeverDone) {
   ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::home}, now));
   see(nav::ExploreState::no_viewpoint);
-  EXPECT_EQ(state(), ExplorationState::ended);
+  EXPECT_EQ(phase(), ExplorationPhase::ended);
   EXPECT_EQ(behaviour.view().exploration.reason, Reason::no_viewpoint);
   EXPECT_EQ(behaviour.view().mode, "hold");
   ASSERT_EQ(told.size(), 1u);
@@ -102,11 +104,11 @@ TEST_F(ExploreModeTest, DrivesHomeBeforeItHolds) {
   ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::home}, now));
   see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
   see(nav::ExploreState::done);
-  EXPECT_EQ(state(), ExplorationState::reporting);
+  EXPECT_EQ(phase(), ExplorationPhase::reporting);
   EXPECT_EQ(target(), Eigen::Vector2d(1, 2));
   behaviour.set_progress({.arrived = true});
   run(100ms);
-  EXPECT_EQ(state(), ExplorationState::done);
+  EXPECT_EQ(phase(), ExplorationPhase::done);
   EXPECT_EQ(behaviour.view().mode, "hold");
 }
 
@@ -116,11 +118,11 @@ TEST_F(ExploreModeTest, ReportsWhereItsHolderWasHeardLast) {
   heard = false;
   at = {20, 5, 0};
   see(nav::ExploreState::done);
-  EXPECT_EQ(state(), ExplorationState::reporting);
+  EXPECT_EQ(phase(), ExplorationPhase::reporting);
   EXPECT_EQ(target(), Eigen::Vector2d(5, 5));
   heard = true;
   run(100ms);
-  EXPECT_EQ(state(), ExplorationState::done);
+  EXPECT_EQ(phase(), ExplorationPhase::done);
 }
 
 TEST_F(ExploreModeTest, AStopInterruptsItAndOnlyARequestGoesOn) {
@@ -153,9 +155,9 @@ TEST_F(ExploreModeTest, EndsWhenItsTimeIsOver) {
   ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::wait, .limit = 3.0}, now));
   see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
   run(2s);
-  EXPECT_EQ(state(), ExplorationState::exploring);
+  EXPECT_EQ(phase(), ExplorationPhase::exploring);
   run(1s);
-  EXPECT_EQ(state(), ExplorationState::ended);
+  EXPECT_EQ(phase(), ExplorationPhase::ended);
   EXPECT_EQ(behaviour.view().mode, "hold");
 }
 
@@ -173,7 +175,7 @@ TEST_F(ExploreModeTest, GoesOnAfterARestart) {
   const KeptBehaviour done = behaviour.kept();
   behaviour.restore(done, false, true);
   run(1s);
-  EXPECT_EQ(state(), ExplorationState::done);
+  EXPECT_EQ(phase(), ExplorationPhase::done);
 }
 
 TEST_F(ExploreModeTest, AnAreaToExploreMustExistAndLeaveRoom) {
@@ -205,7 +207,7 @@ TEST_F(ExploreModeTest, TheAreaToExploreSurvivesARestartAndEndsTheExplorationWhe
   EXPECT_EQ(area, "west");
   refusal = Reason::outside_area;
   run(1s);
-  EXPECT_EQ(state(), ExplorationState::ended);
+  EXPECT_EQ(phase(), ExplorationPhase::ended);
   EXPECT_EQ(behaviour.view().exploration.reason, Reason::outside_area);
   EXPECT_EQ(behaviour.view().mode, "hold");
 }

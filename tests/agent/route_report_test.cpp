@@ -6,7 +6,7 @@
 namespace adit::agent {
 namespace {
 
-FollowedRoute along(double from, double to, std::uint32_t unknown = 0) {
+contract::Route along(double from, double to, std::uint32_t unknown = 0) {
   return {.goal_id = 1, .corners = 3, .points = {{from, 0, 0}, {5, 0, 0}, {to, 5, 0}}, .unknown = unknown};
 }
 
@@ -32,7 +32,7 @@ TEST(RouteReport, AnotherGoalIsSentAtOnceAndTheEndWithinASecond) {
   const Time now{};
   EXPECT_FALSE(report.due({}, now)) << "stations expect none";
   EXPECT_TRUE(report.due(along(0, 5), now));
-  FollowedRoute other = along(0, 5);
+  contract::Route other = along(0, 5);
   other.goal_id = 2;
   EXPECT_TRUE(report.due(other, now));
   EXPECT_FALSE(report.due({}, now));
@@ -44,7 +44,7 @@ TEST(RouteReport, ARouteThatIsLostAndFoundAgainAndAgainIsSentOnceASecond) {
   RouteReport report;
   int sent = 0;
   for (int i = 0; i < 100; ++i)
-    sent += report.due(i % 2 == 0 ? along(0, 5) : FollowedRoute{}, Time(i * 100ms)) ? 1 : 0;
+    sent += report.due(i % 2 == 0 ? along(0, 5) : contract::Route{}, Time(i * 100ms)) ? 1 : 0;
   EXPECT_LE(sent, 10);
 }
 

@@ -9,25 +9,7 @@
 
 namespace adit::agent {
 
-std::string_view name(ExplorationState state) {
-  switch (state) {
-    case ExplorationState::none:
-      return "none";
-    case ExplorationState::starting:
-      return "starting";
-    case ExplorationState::exploring:
-      return "exploring";
-    case ExplorationState::travelling:
-      return "travelling";
-    case ExplorationState::reporting:
-      return "reporting";
-    case ExplorationState::done:
-      return "done";
-    case ExplorationState::ended:
-      return "ended";
-  }
-  return "";
-}
+using contract::ExplorationPhase;
 
 void ExploreMode::note(Facts&, Time) const {
   if (!context_.holder_heard || !context_.holder_heard()) return;
@@ -41,7 +23,7 @@ void ExploreMode::set_exploration(const ExploreRequest& request) {
 
 void ExploreMode::begin() {
   ++run_;
-  view_ = {.state = ExplorationState::starting};
+  view_ = {.phase = ExplorationPhase::starting};
   goal_.reset();
   navigated_ = {};
   asked_.reset();
@@ -55,7 +37,7 @@ void ExploreMode::begin() {
 
 // `mode R explore` goes on with an exploration that was interrupted, and begins one otherwise.
 void ExploreMode::enter(Time now) {
-  if (view_.state == ExplorationState::none || is_over()) {
+  if (view_.phase == ExplorationPhase::none || is_over()) {
     request_ = {};
     begin();
   }
@@ -66,7 +48,7 @@ void ExploreMode::enter(Time now) {
 void ExploreMode::tick(bool passes, Time now) {
   active_ = true;
   if (is_over()) return context_.output.write(Stand{}, now);
-  if (view_.state == ExplorationState::reporting) {
+  if (view_.phase == ExplorationPhase::reporting) {
     if (passes) tick_return(now);
   } else {
     if (ends_ && now >= *ends_)
@@ -129,7 +111,7 @@ void ExploreMode::answered(const nav::ExploreStep& step) {
   }
   const auto pose = context_.pose();
   const bool far = pose && (goal_->head<2>() - pose->position()).norm() > kFar;
-  view_.state = far ? ExplorationState::travelling : ExplorationState::exploring;
+  view_.phase = far ? ExplorationPhase::travelling : ExplorationPhase::exploring;
 }
 
 std::string ExploreMode::summary() const {
@@ -157,7 +139,7 @@ void ExploreMode::conclude(Reason reason, const std::string& text) {
 }
 
 void ExploreMode::begin_return() {
-  view_.state = ExplorationState::reporting;
+  view_.phase = ExplorationPhase::reporting;
   switch (why_ == Reason::no_viewpoint ? AfterExploring::wait : request_.after) {
     case AfterExploring::wait:
       return finish();
@@ -192,15 +174,15 @@ void ExploreMode::tick_return(Time now) {
 }
 
 void ExploreMode::finish() {
-  view_.state = complete_ ? ExplorationState::done : ExplorationState::ended;
+  view_.phase = complete_ ? ExplorationPhase::done : ExplorationPhase::ended;
   view_.reason = why_;
   goal_.reset();
 }
 
 void ExploreMode::store(KeptBehaviour& kept) const {
-  if (view_.state == ExplorationState::none) return;
+  if (view_.phase == ExplorationPhase::none) return;
   kept.modes.push_back({"explore", store::Packer{}
-                                       .put(static_cast<std::uint8_t>(view_.state))
+                                       .put(static_cast<std::uint8_t>(view_.phase))
                                        .put(static_cast<std::uint8_t>(request_.after))
                                        .flag(complete_)
                                        .put(static_cast<std::uint16_t>(why_))
@@ -222,17 +204,17 @@ void ExploreMode::restore(const KeptBehaviour& kept) {
   const double limit = in.number();
   std::string area;
   if (!in.done()) area = in.text(32);  // An earlier version wrote none.
-  if (!in.done() || state > static_cast<std::uint8_t>(ExplorationState::ended) || after > 2 || !(limit > 0))
+  if (!in.done() || state > static_cast<std::uint8_t>(ExplorationPhase::ended) || after > 2 || !(limit > 0))
     return;
   request_ = {static_cast<AfterExploring>(after), limit, area};
   begin();
-  const auto was = static_cast<ExplorationState>(state);
-  if (was != ExplorationState::done && was != ExplorationState::ended && was != ExplorationState::reporting)
+  const auto was = static_cast<ExplorationPhase>(state);
+  if (was != ExplorationPhase::done && was != ExplorationPhase::ended && was != ExplorationPhase::reporting)
     return;
-  view_.state = was;
+  view_.phase = was;
   complete_ = complete;
   why_ = view_.reason = static_cast<Reason>(why);
-  if (was == ExplorationState::reporting) begin_return();
+  if (was == ExplorationPhase::reporting) begin_return();
 }
 
 }  // namespace adit::agent

@@ -31,14 +31,15 @@ class ExploreMode : public ModeModule {
   void set_exploration(const ExploreRequest& request) override;
   void navigated(const Progress& progress) override { navigated_ = progress; }
   ModeProgress progress(bool) const override {
-    return {.finished = is_over(), .exploration = active_ || is_over() ? view_ : ExplorationView{}};
+    return {.finished = is_over(), .exploration = active_ || is_over() ? view_ : contract::Exploration{}};
   }
   void store(KeptBehaviour& kept) const override;
   void restore(const KeptBehaviour& kept) override;
 
  private:
   bool is_over() const {
-    return view_.state == ExplorationState::done || view_.state == ExplorationState::ended;
+    using enum contract::ExplorationPhase;
+    return view_.phase == done || view_.phase == ended;
   }
   void begin();
   void ask(Time now);
@@ -55,7 +56,7 @@ class ExploreMode : public ModeModule {
 
   ModeContext context_;
   ExploreRequest request_{};
-  ExplorationView view_{};
+  contract::Exploration view_{};
   bool active_{};                          ///< The mode was not left.
   std::optional<Eigen::Vector3d> goal_{};  ///< Map frame, m.
   Progress navigated_{};
