@@ -11,8 +11,8 @@ namespace {
 /// The priority of a notification in the state that the robot has.
 Priority priority_of(const Notice& notice, const AlertRow* row, const Robot* robot) {
   if (!notice.mine) return Priority::log;
-  // A code of a later version: its level says how much it matters.
-  if (!row) return notice.level == Level::info ? Priority::know : Priority::soon;
+  // A code of a later version: its severity says how much it matters.
+  if (!row) return notice.severity == Severity::info ? Priority::know : Priority::soon;
   if (row->priority == Priority::act && row->by_hand && (!robot || !is_by_hand(robot->mode)))
     return Priority::soon;
   return row->priority;
@@ -29,9 +29,9 @@ bool over(const Robot& robot, Ends ends) {
     case Ends::stop_cleared:
       return !robot.stopped;
     case Ends::goes_on:
-      return robot.reason == Reason::none && robot.goal_phase != GoalPhase::blocked;
+      return robot.reason == Reason::none && robot.goal_state != GoalState::blocked;
     case Ends::busy:
-      return !robot.mine || robot.goal_phase == GoalPhase::active || is_by_hand(robot.mode) ||
+      return !robot.mine || robot.goal_state == GoalState::active || is_by_hand(robot.mode) ||
              robot.exploration.phase == ExplorationPhase::exploring;
     case Ends::not_asked:
       return !robot.mine || !robot.locked;

@@ -26,7 +26,7 @@ using command::verb;
 std::string nearest_mode(const RobotView* robot, const std::string& typed) {
   std::vector<std::string> offered;
   if (robot)
-    for (const ModeChoice& choice : robot->choices) offered.push_back(choice.mode);
+    for (const ModeOption& option : robot->options) offered.push_back(option.mode);
   const std::string meant = command::nearest(typed, offered);
   return meant.empty() ? "" : ", did you mean " + meant + "?";
 }
@@ -320,11 +320,11 @@ void Commands::late_stop(const Answer& answer) {
                           : answer.answered
                               ? "refused the stop that was sent before it was heard: " + answer.text
                               : "did not acknowledge the stop: " + answer.text;
-  fleet_.say({.robot = answer.robot,
-              .level = answer.accepted ? Level::info : Level::warning,
+  fleet_.say({.severity = answer.accepted ? Severity::info : Severity::warning,
               .code = answer.accepted ? "stop_acknowledged" : "stop_not_acknowledged",
               .reason = answer.reason,
-              .text = answer.robot + " " + end},
+              .text = answer.robot + " " + end,
+              .robot = answer.robot},
              strand_.now());
 }
 

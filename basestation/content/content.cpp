@@ -106,17 +106,17 @@ std::uint32_t Content::drawn_start() {
 }
 
 void Content::warn(const std::string& code, const std::string& text) {
-  fleet_.say({.level = Level::warning, .code = code, .text = command::clean(text, 240)}, strand_.now());
+  fleet_.say({.severity = Severity::warning, .code = code, .text = command::clean(text, 240)}, strand_.now());
 }
 
 FindingDesk::Outputs Content::desk_outputs() {
   return {[this](const findings::Finding& f) {
             book_.add(f.key);
             fleet_.say(
-                {.robot = f.key.robot,
-                 .code = "found",
+                {.code = "found",
                  .text = f.key.robot + " found " + command::clean(f.kind, findings::Finding::kKind) +
-                         (f.text.empty() ? "" : ": " + command::clean(f.text, findings::Finding::kText))},
+                         (f.text.empty() ? "" : ": " + command::clean(f.text, findings::Finding::kText)),
+                 .robot = f.key.robot},
                 strand_.now());
           },
           [this](const std::string& code, const std::string& text) { warn(code, text); }};

@@ -44,7 +44,7 @@ class Fleet {
   /// Marks silent robots lost, and forgets stations and reports that were silent for a minute.
   void check(Time now);
   /// Adds a notice of this station itself.
-  void say(Notice said, Time at) { notice({std::move(said), at, {}, {}}); }
+  void say(contract::Notification said, Time at) { notice({{std::move(said)}, at, {}}); }
 
   /// Whether messages of this participant count as that robot's: false for another robot of the same name.
   bool speaks_for(const std::string& robot, const wire::ParticipantId& participant) const;
@@ -82,6 +82,9 @@ class Fleet {
 
   void hear(const contract::Presence& presence, const wire::SampleInfo& info);
   RobotView* touch(const std::string& name, const wire::SampleInfo& info);
+  /// The view that a message is about; null for a malformed message and for a robot that is ignored.
+  template <class Message>
+  RobotView* touch(const std::optional<Message>& message, const wire::SampleInfo& info);
   /// Returns the view for a sample of a participant that is not the shown one.
   RobotView* touch_namesake(RobotView& shown, const wire::SampleInfo& info);
   static bool replaces(const Namesake& namesake, const RobotView& shown, Time now);

@@ -28,12 +28,12 @@ const PeerRate* PeerRates::find(const wire::ParticipantId& peer) const {
   return found == peers_.end() || !found->second.rate ? nullptr : &*found->second.rate;
 }
 
-SenderReport described(const SenderView& sender) {
-  SenderReport out{.link = sender.link,
-                   .bandwidth = sender.bandwidth,
-                   .queue = sender.queue,
-                   .state_rate = sender.state_rate};
-  for (std::size_t p = 0; p < wire::kPriorities; ++p) out.dropped[priority_name(p)] = sender.dropped[p];
+SenderReport described(const contract::LinkReport& report) {
+  SenderReport out{.link = report.link,
+                   .bandwidth = report.bandwidth,
+                   .queue = report.queue,
+                   .state_rate = report.state_rate};
+  for (std::size_t p = 0; p < wire::kPriorities; ++p) out.dropped[priority_name(p)] = report.dropped[p];
   return out;
 }
 
@@ -57,8 +57,9 @@ std::vector<LinkReport> links(const Fleet& fleet, Time now) {
     }
     const auto report = fleet.traffic().find(peer.name);
     if (report == fleet.traffic().end()) continue;
-    if (report->second.lost_there >= 0.0F) link.lost_to = report->second.lost_there;
-    link.sender = described(report->second.sender);
+    for (const contract::PeerLink& heard : report->second.peers)
+      if (heard.peer == fleet.own_name()) link.lost_to = heard.lost;
+    link.sender = described(report->second);
   }
   return result;
 }

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "basestation/model/network.hpp"
-#include "core/wire/link/peer_meter.hpp"
 #include "core/wire/link_state.hpp"
 
 namespace adit::station {
@@ -37,19 +35,10 @@ class PeerRates {
   Time at_{};
 };
 
-/// An agent's own report of its link.
-struct SenderView {
-  std::string link{};  ///< Link profile; empty: the traffic is not limited.
-  double bandwidth{};  ///< In bit/s; 0: unknown.
-  double queue{};      ///< Queued airtime without bulk and video, s.
-  std::array<std::uint32_t, wire::kPriorities> dropped{};  ///< Since its start, by priority.
-  double state_rate{};                                     ///< Rate of RobotState, Hz.
-};
-
 /// The links to all agents whose heartbeats were heard, by name.
 std::vector<LinkReport> links(const Fleet& fleet, Time now);
-/// What front ends receive of an agent's report.
-SenderReport described(const SenderView& sender);
+/// What front ends receive of the sender in an agent's report.
+SenderReport described(const contract::LinkReport& report);
 
 /// Readable name of a priority's traffic.
 const char* priority_name(std::size_t priority);

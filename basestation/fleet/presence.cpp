@@ -14,7 +14,6 @@ using namespace std::chrono_literals;
 
 namespace {
 constexpr Duration kReportPeriod = 2s;
-constexpr std::size_t kMaxReportTopics = 16;
 constexpr std::size_t kMaxTimers = 31;  // Then further peers hear the periodic announcement only.
 }  // namespace
 
@@ -65,9 +64,10 @@ Result<void> Presence::start() {
   radio_.on_participant(strand_, [this, alive = std::weak_ptr(alive_)](const wire::ParticipantEvent& event) {
     if (alive.expired() || !event.present) return;
     if (event.incompatible.empty()) return announce_often();
-    fleet_.say(
-        {.level = Level::warning, .code = "other_release", .text = command::clean(event.incompatible, 240)},
-        strand_.now());
+    fleet_.say({.severity = Severity::warning,
+                .code = "other_release",
+                .text = command::clean(event.incompatible, 240)},
+               strand_.now());
   });
   // Random phases, so that stations that start together do not send at the same time.
   timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(params_.presence)), [this] {
@@ -102,33 +102,12 @@ void Presence::announce_often() {
 }
 
 void Presence::report_traffic() {
-  TrafficView view = meter_.read(params_.name, radio_.counters(), radio_.sender(), strand_.now());
+  contract::LinkReport report = meter_.read(params_.name, radio_.counters(), radio_.sender(), strand_.now());
   fleet_.carried(radio_.peers(), strand_.now());
-  radio::LinkReport report;
-  report.agent(params_.name);
-  report.discovery_out(view.discovery_out);
-  report.discovery_in(view.discovery_in);
-  report.total_out(view.total_out);
-  report.total_in(view.total_in);
-  report.malformed(view.malformed);
-  report.link(view.sender.link);
-  report.bandwidth(static_cast<float>(view.sender.bandwidth));
-  report.queue(static_cast<float>(view.sender.queue));
-  report.dropped(view.sender.dropped);
-  report.seq(++report_seq_);
-  for (const TopicRate& rate : view.topics) {
-    if (report.topics().size() == kMaxReportTopics) break;
-    radio::TopicTraffic row;
-    row.topic(rate.topic);
-    row.bytes_out(rate.bytes_out);
-    row.samples_out(rate.samples_out);
-    row.bytes_in(rate.bytes_in);
-    row.samples_in(rate.samples_in);
-    row.dropped(rate.dropped);
-    report.topics().push_back(row);
-  }
-  fleet_.own_traffic(std::move(view));
-  if (up_) (void)topics_->report.write(report);  // Best effort: the next one replaces it.
+  radio::LinkReport sample = encode(report);
+  sample.seq(++report_seq_);
+  fleet_.own_traffic({std::move(report), strand_.now()});
+  if (up_) (void)topics_->report.write(sample);  // Best effort: the next one replaces it.
 }
 
 }  // namespace adit::station

@@ -30,8 +30,7 @@ struct RobotView : Robot {
 
   std::vector<std::string> modes{};  ///< As in its capabilities.
 
-  std::uint64_t stamp{};  ///< Stamp of the robot's clock, to be echoed.
-  wire::ParticipantId stamped_by{};
+  wire::ParticipantId stamped_by{};  ///< The participant of the last RobotState.
 
   bool owned{false};  ///< An AuthorityStatus was received.
   Id holder_id{};
@@ -39,7 +38,7 @@ struct RobotView : Robot {
 
   std::uint64_t behaviour_count{};  ///< Number of BehaviourStates received.
 
-  std::vector<ComponentView> components{};
+  std::vector<ComponentHealth> components{};
 };
 
 /// What front ends receive of a robot.
@@ -55,26 +54,18 @@ struct StationView {
 
 /// A notice as the station stores it: with the time of the event in place of its age.
 struct StoredNotice : Notice {
-  Time at{};  ///< Time of the event, by this station's clock.
-  /// Set while the robot's clock is unknown: `at` is then the time of reception, and is moved back to the
-  /// event later.
-  std::optional<std::uint64_t> undated{};  ///< Stamp of the robot's clock.
+  /// Time of the event, by this station's clock. While `stamp` is not 0 the robot's clock is unknown, and
+  /// this is the time of reception; it is moved back to the event later.
+  Time at{};
   wire::ParticipantId said_by{};
 };
 
 /// What front ends receive of a notice.
 Notice described(const StoredNotice& notice, Time now);
 
-struct TrafficView {
-  std::string agent{};
+/// The last report of an agent, or this station's own.
+struct TrafficView : contract::LinkReport {
   Time last_heard{};
-  float discovery_out{}, discovery_in{}, total_out{}, total_in{};  ///< Bytes/s.
-  std::uint32_t malformed{};                                       ///< Malformed samples since its start.
-  std::vector<TopicRate> topics{};
-  std::map<std::string, double> hears{};  ///< Fraction of heartbeats that it misses, [0, 1], by their sender.
-  SenderView sender{};
-  float lost_there{
-      -1.0F};  ///< Fraction of this station's heartbeats that the agent missed, [0, 1]; negative: unknown.
 };
 
 }  // namespace adit::station

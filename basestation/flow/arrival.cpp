@@ -50,16 +50,16 @@ void Arrival::poll() {
     if (!seen_) return;
   }
   if (robot_now->goal_id != goal_id_) return end(Reason::cancelled, "the robot was given another goal");
-  if (robot_now->goal_phase == GoalPhase::reached) return end(Reason::none, "");
+  if (robot_now->goal_state == GoalState::reached) return end(Reason::none, "");
   if (robot_now->stopped) return end(Reason::stopped, "");
   if (robot_now->mode != "waypoint")
     return end(Reason::cancelled, "the robot left waypoint for " + robot_now->mode);
-  const bool blocked = robot_now->goal_phase == GoalPhase::blocked;
+  const bool blocked = robot_now->goal_state == GoalState::blocked;
   if (blocked && robot_now->reason == Reason::goal_unreachable)
     return end(Reason::goal_unreachable, "no way leads to the goal");
   if (blocked && robot_now->reason != Reason::none && robot_now->reason != Reason::blocked)
     return end(robot_now->reason, std::string(describe(robot_now->reason)));
-  if (robot_now->goal_phase != GoalPhase::blocked) {
+  if (robot_now->goal_state != GoalState::blocked) {
     blocked_ = false;
   } else if (!blocked_) {
     blocked_ = true;

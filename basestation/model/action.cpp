@@ -73,9 +73,9 @@ class Judge {
   }
 
   Action mode(const std::string& name) const {
-    const auto choice = std::find_if(robot_.choices.begin(), robot_.choices.end(),
-                                     [&](const ModeChoice& c) { return c.mode == name; });
-    if (choice == robot_.choices.end()) return refuse(Reason::mode_not_installed);
+    const auto choice = std::find_if(robot_.options.begin(), robot_.options.end(),
+                                     [&](const ModeOption& c) { return c.mode == name; });
+    if (choice == robot_.options.end()) return refuse(Reason::mode_not_installed);
     return can_enter(*choice) ? Action{.valid = true} : refuse(choice->reason);
   }
 
@@ -103,14 +103,14 @@ class Judge {
 std::vector<std::string> offered(const std::vector<const Robot*>& selection) {
   std::vector<std::string> modes;
   for (const Robot* robot : selection)
-    for (const ModeChoice& choice : robot->choices)
+    for (const ModeOption& choice : robot->options)
       if (std::find(modes.begin(), modes.end(), choice.mode) == modes.end()) modes.push_back(choice.mode);
   return modes;
 }
 
 }  // namespace
 
-bool can_enter(const ModeChoice& choice) {
+bool can_enter(const ModeOption& choice) {
   return choice.available || (is_by_hand(choice.mode) && (choice.reason == Reason::joystick_stale ||
                                                           choice.reason == Reason::stick_not_centred));
 }

@@ -20,7 +20,7 @@ struct Action {
 };
 
 /// Whether the robot would enter the mode now. For the manual modes the station adds a centred stick.
-bool can_enter(const ModeChoice& choice);
+bool can_enter(const ModeOption& option);
 
 /// The stable identifier of the action for front ends: "take", "mode_waypoint".
 std::string id_of(const Action& action);

@@ -18,18 +18,18 @@ void fields(Io& io, Of<Io, Epoch>& epoch) {
 }
 
 template <class Io>
-void fields(Io& io, Of<Io, ModeChoice>& choice) {
+void fields(Io& io, Of<Io, ModeOption>& option) {
   // What the station can enter: it adds a centred stick to a mode that is driven by hand.
-  const bool by_stick = !Io::kReads && !choice.available && can_enter(choice);
-  ModeChoice shown = by_stick ? ModeChoice{choice.mode, true, Reason::none} : choice;
+  const bool by_stick = !Io::kReads && !option.available && can_enter(option);
+  ModeOption shown = by_stick ? ModeOption{option.mode, true, Reason::none} : option;
   io.field("mode", shown.mode);
   io.field("available", shown.available);
   io.field("reason", shown.reason);
-  if constexpr (Io::kReads) choice = shown;
+  if constexpr (Io::kReads) option = shown;
 }
 
 template <class Io>
-void fields(Io& io, Of<Io, ExplorationView>& e) {
+void fields(Io& io, Of<Io, contract::Exploration>& e) {
   io.word("state", e.phase, ExplorationPhase::ended, [](ExplorationPhase p) { return to_string(p); });
   io.field("reason", e.reason);
   io.field("volume", e.volume);
@@ -39,23 +39,23 @@ void fields(Io& io, Of<Io, ExplorationView>& e) {
 }
 
 template <class Io>
-void fields(Io& io, Of<Io, AreaView>& area) {
+void fields(Io& io, Of<Io, Area>& area) {
   io.field("name", area.name);
-  io.field("kind", area.kind);
+  io.word("kind", area.kind, AreaKind::prefer, [](AreaKind kind) { return name(kind); });
   io.field("corners", area.corners);
-  if (Io::kReads || area.kind == "prefer") io.field("weight", area.weight);
+  if (Io::kReads || area.kind == AreaKind::prefer) io.field("weight", area.weight);
   if (Io::kReads || std::isfinite(area.z_min)) io.field("z_min", area.z_min);
   if (Io::kReads || std::isfinite(area.z_max)) io.field("z_max", area.z_max);
 }
 
 template <class Io>
-void fields(Io& io, Of<Io, RouteView>& route) {
+void fields(Io& io, Of<Io, contract::Route>& route) {
   io.field("goal_id", route.goal_id);
   io.field("points", route.points);
   io.field("unknown", route.unknown);
   io.field("corners", route.corners);
   if constexpr (Io::kReads)
-    if (route.points.size() > RouteView::kMaxCorners) io.refuse("points");
+    if (route.points.size() > contract::Route::kMaxCorners) io.refuse("points");
 }
 
 template <class Io>
@@ -104,9 +104,9 @@ void fields(Io& io, Of<Io, Robot>& robot) {
   io.field("mode", robot.mode);
   io.field("moving_allowed", robot.moving_allowed);
   io.field("reason", robot.reason);
-  io.word("goal_state", robot.goal_phase, GoalPhase::reached, [](GoalPhase p) { return to_string(p); });
+  io.word("goal_state", robot.goal_state, GoalState::reached, [](GoalState s) { return to_string(s); });
   io.field("goal_id", robot.goal_id);
-  io.field("modes", robot.choices);
+  io.field("modes", robot.options);
   io.field("convoy", robot.convoy);
   io.field("yields", robot.yields);
   io.field("yields_to", robot.yields_to);
@@ -120,7 +120,7 @@ void fields(Io& io, Of<Io, Robot>& robot) {
     io.field("climbs_stairs", robot.climbs_stairs);
   }
   place_fields(io, robot);
-  if (Io::kReads || robot.goal_phase != GoalPhase::none) io.field("goal", robot.goal);
+  if (Io::kReads || robot.goal_state != GoalState::none) io.field("goal", robot.goal);
   if (Io::kReads || !robot.route.points.empty()) io.field("route", robot.route);
   io.field("areas", robot.areas);
   if (Io::kReads || robot.exploration.phase != ExplorationPhase::none)
@@ -142,7 +142,7 @@ void fields(Io& io, Of<Io, Notice>& notice) {
   io.field("age", notice.age);
   io.field("robot", notice.robot);
   io.field("operator", notice.operator_name);
-  io.word("level", notice.level, Level::error, [](Level l) { return to_string(l); });
+  io.word("level", notice.severity, Severity::error, [](Severity s) { return to_string(s); });
   io.field("code", notice.code);
   io.field("reason", notice.reason);
   io.field("text", notice.text);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -126,6 +127,13 @@ class JsonReader {
       if (!take(value[i], out[i])) return false;
     return true;
   }
+  template <int N>
+  static bool take(const nlohmann::json& value, Eigen::Matrix<double, N, 1>& out) {
+    std::array<double, N> numbers{};
+    if (!take(value, numbers)) return false;
+    out = Eigen::Matrix<double, N, 1>(numbers.data());
+    return true;
+  }
   /// One of the words that `to_string` gives for 0, 1, ...
   template <class Enum, class ToString>
   void word(const char* key, Enum& out, Enum last, const ToString& to_string) {
@@ -217,6 +225,10 @@ class JsonWriter {
     }
   }
   static nlohmann::json of(const Reason& reason) { return name(reason); }
+  template <int N>
+  static nlohmann::json of(const Eigen::Matrix<double, N, 1>& vector) {
+    return std::vector<double>(vector.begin(), vector.end());
+  }
   template <class T>
   static nlohmann::json of(const std::optional<T>& value) {
     return value ? of(*value) : nlohmann::json();

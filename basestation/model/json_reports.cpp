@@ -12,9 +12,9 @@ namespace adit::station {
 
 using nlohmann::json;
 
-const char* word(ComponentPhase phase) {
+const char* word(PartState state) {
   constexpr std::array kWords{"starting", "up", "waiting", "FAILED", "HUNG"};
-  const auto index = static_cast<std::size_t>(phase);
+  const auto index = static_cast<std::size_t>(state);
   return index < kWords.size() ? kWords[index] : "FAILED";
 }
 
@@ -24,9 +24,9 @@ const char* to_string(Verdict verdict) {
 }
 
 template <class Io>
-void fields(Io& io, Of<Io, ComponentView>& component) {
+void fields(Io& io, Of<Io, ComponentHealth>& component) {
   io.field("component", component.name);
-  io.word("state", component.phase, ComponentPhase::hung, [](ComponentPhase phase) { return word(phase); });
+  io.word("state", component.state, PartState::hung, [](PartState state) { return word(state); });
   io.field("healthy", component.healthy);
   io.flag("policy", component.automatic, "manual", "auto");
   if constexpr (!Io::kReads) io.field("can_restart", command::is_component(component.name));
@@ -48,7 +48,7 @@ void fields(Io& io, Of<Io, HealthReport>& report) {
 }
 
 template <class Io>
-void fields(Io& io, Of<Io, TopicRate>& rate) {
+void fields(Io& io, Of<Io, TopicTraffic>& rate) {
   io.field("topic", rate.topic);
   io.field("bytes_out", rate.bytes_out);
   io.field("samples_out", rate.samples_out);

@@ -7,17 +7,12 @@
 #include <vector>
 
 #include "basestation/model/outcome.hpp"
+#include "core/contract/link.hpp"
 #include "core/result/result.hpp"
 
 namespace adit::station {
 
-/// Bytes/s and samples/s of one topic at one agent.
-struct TopicRate {
-  std::string topic{};
-  float bytes_out{}, samples_out{}, bytes_in{}, samples_in{};
-  std::uint32_t dropped{};  ///< Since its start.
-  bool operator==(const TopicRate&) const = default;
-};
+using contract::TopicTraffic;
 
 /// What an agent sends and receives, bytes/s.
 struct AgentTraffic {
@@ -25,7 +20,7 @@ struct AgentTraffic {
   double age{};  ///< Of its report, s.
   float discovery_out{}, discovery_in{}, total_out{}, total_in{};
   std::uint32_t malformed{};  ///< Malformed samples since its start.
-  std::vector<TopicRate> topics{};
+  std::vector<TopicTraffic> topics{};
   std::map<std::string, double> classes_out{};  ///< Bytes/s that it sends, by traffic class and "discovery".
   std::map<std::string, double> hears{};  ///< Fraction of heartbeats that it misses, [0, 1], by their sender.
   bool operator==(const AgentTraffic&) const = default;

@@ -30,12 +30,12 @@ Place nearest_on(const Place& from, const Place& to, const Place& place) {
 }  // namespace
 
 RouteRest rest_of_route(const Robot& robot) {
-  const RouteView& route = robot.route;
+  const contract::Route& route = robot.route;
   const bool finite = std::isfinite(robot.x) && std::isfinite(robot.y) && std::isfinite(robot.z);
   if (!robot.located || !finite || route.points.size() < 2 || route.goal_id != robot.goal_id) return {};
   const Place here{robot.x, robot.y, robot.z};
   std::vector<Place> corners;
-  for (const auto& [x, y, z] : route.points) corners.push_back({x, y, z});
+  for (const Eigen::Vector3d& point : route.points) corners.push_back({point.x(), point.y(), point.z()});
   std::size_t leg = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {

@@ -53,16 +53,16 @@ std::string standstill_text(const Robot& robot) {
   return std::string(describe(robot.reason));
 }
 
-std::string exploration_text(const ExplorationView& e) {
+std::string exploration_text(const contract::Exploration& e) {
   return std::string(to_string(e.phase)) +
          (e.reason == Reason::none ? "" : " (" + std::string(describe(e.reason)) + ")") + ", " +
          fixed(e.volume, 0) + " m3, about " + fixed(e.share * 100.0, 0) + "%, " + std::to_string(e.open) +
          " frontiers left, " + std::to_string(e.unreachable) + " out of reach";
 }
 
-std::string area_text(const AreaView& area) {
-  std::string text = area.name + " " + area.kind;
-  if (area.kind == "prefer") text += " weight " + fixed(area.weight, 1);
+std::string area_text(const Area& area) {
+  std::string text = area.name + " " + std::string(name(area.kind));
+  if (area.kind == AreaKind::prefer) text += " weight " + fixed(area.weight, 1);
   for (const auto& corner : area.corners) text += ", " + fixed(corner[0], 1) + " " + fixed(corner[1], 1);
   if (std::isfinite(area.z_min)) text += ", from z " + fixed(area.z_min, 1);
   if (std::isfinite(area.z_max)) text += ", up to z " + fixed(area.z_max, 1);

@@ -22,8 +22,8 @@ std::string motion_text(const Robot& robot);
 /// Why the robot does not move, in words; empty: nothing keeps it.
 std::string standstill_text(const Robot& robot);
 /// What it explored: "exploring, 120 m3, about 40%, 3 frontiers left, 0 out of reach".
-std::string exploration_text(const ExplorationView& exploration);
+std::string exploration_text(const contract::Exploration& exploration);
 /// An area with its kind, corners (m) and heights (m).
-std::string area_text(const AreaView& area);
+std::string area_text(const Area& area);
 
 }  // namespace adit::station

@@ -119,7 +119,7 @@ std::string class_of(const std::string& topic) {
 std::map<std::string, double> classes_out(const TrafficView& traffic) {
   std::map<std::string, double> out;
   if (traffic.discovery_out > 0.0F) out["discovery"] = traffic.discovery_out;
-  for (const TopicRate& rate : traffic.topics)
+  for (const TopicTraffic& rate : traffic.topics)
     if (rate.bytes_out > 0.0F) out[class_of(rate.topic)] += rate.bytes_out;
   return out;
 }
@@ -128,7 +128,7 @@ std::map<std::string, double> classes_out(const TrafficView& traffic) {
 
 NetworkReport network_report(const Fleet& fleet, Time now) {
   NetworkReport report;
-  for (const auto& [agent, traffic] : fleet.traffic())
+  for (const auto& [agent, traffic] : fleet.traffic()) {
     report.agents.push_back({.agent = agent,
                              .age = seconds(now - traffic.last_heard),
                              .discovery_out = traffic.discovery_out,
@@ -137,11 +137,12 @@ NetworkReport network_report(const Fleet& fleet, Time now) {
                              .total_in = traffic.total_in,
                              .malformed = traffic.malformed,
                              .topics = traffic.topics,
-                             .classes_out = classes_out(traffic),
-                             .hears = traffic.hears});
+                             .classes_out = classes_out(traffic)});
+    for (const contract::PeerLink& peer : traffic.peers) report.agents.back().hears[peer.peer] = peer.lost;
+  }
   report.links = links(fleet, now);
   const auto own = fleet.traffic().find(fleet.own_name());
-  if (own != fleet.traffic().end()) report.sender = described(own->second.sender);
+  if (own != fleet.traffic().end()) report.sender = described(own->second);
   return report;
 }
 

@@ -43,8 +43,8 @@ std::string pose_text(const RobotView& robot) {
 }
 
 std::string goal_text(const RobotView& robot) {
-  if (robot.goal_phase == GoalPhase::none) return "-";
-  return std::string(to_string(robot.goal_phase)) + " " + fixed(robot.goal[0], 1) + " " +
+  if (robot.goal_state == GoalState::none) return "-";
+  return std::string(to_string(robot.goal_state)) + " " + fixed(robot.goal[0], 1) + " " +
          fixed(robot.goal[1], 1);
 }
 
@@ -111,7 +111,7 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
     out += "  yields   makes way for " + robot.yields_to + "\n";
   else if (robot.yields)
     out += "  yields   to robots with right of way\n";
-  for (const AreaView& area : robot.areas) out += "  area     " + area_text(area) + "\n";
+  for (const Area& area : robot.areas) out += "  area     " + area_text(area) + "\n";
   if (robot.exploration.phase != ExplorationPhase::none)
     out += "  explored " + exploration_text(robot.exploration) + "\n";
   if (robot.located)
@@ -130,10 +130,10 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
            command::joined(robot.sensors, "-") + "\n  services " + command::joined(robot.services, "-") +
            "\n";
   out += "  battery  " + battery_text(robot) + "\n";
-  for (const ModeChoice& choice : robot.choices) {
-    std::string row = "  mode " + choice.mode;
+  for (const ModeOption& option : robot.options) {
+    std::string row = "  mode " + option.mode;
     row.resize(std::max<std::size_t>(row.size() + 1, 23), ' ');
-    out += row + (can_enter(choice) ? "possible" : "not now: " + std::string(describe(choice.reason))) + "\n";
+    out += row + (can_enter(option) ? "possible" : "not now: " + std::string(describe(option.reason))) + "\n";
   }
   out += notices_text(fleet, robot.name, now);
   return out;
@@ -163,9 +163,9 @@ std::string links_text(const Fleet& fleet, Time now) {
   for (const auto& [agent, traffic] : fleet.traffic()) {
     std::string classes;
     for (std::size_t p = 0; p < wire::kPriorities; ++p)
-      if (traffic.sender.dropped[p] > 0)
+      if (traffic.dropped[p] > 0)
         classes += (classes.empty() ? "" : ", ") + std::string(priority_name(p)) + " " +
-                   std::to_string(traffic.sender.dropped[p]);
+                   std::to_string(traffic.dropped[p]);
     if (!classes.empty()) out += agent + " dropped before the air took it: " + classes + "\n";
   }
   return out;
@@ -182,7 +182,7 @@ std::string net_text(const Fleet& fleet, Time now, const std::string& link, doub
     // On a full link the report period is 8 s.
     const bool silent = now - traffic.last_heard > 4 * Fleet::kLostAfter;
     std::string first = agent + (silent ? " (silent)" : "");
-    for (const TopicRate& row : traffic.topics) {
+    for (const TopicTraffic& row : traffic.topics) {
       rows.push_back({first, row.topic, fixed(row.bytes_out, 0), fixed(row.samples_out, 1),
                       fixed(row.bytes_in, 0), fixed(row.samples_in, 1), std::to_string(row.dropped)});
       first.clear();
@@ -209,10 +209,10 @@ std::string health_text(const std::vector<const RobotView*>& robots) {
   std::string silent, note;
   for (const RobotView* robot : robots) {
     if (robot->components.empty()) silent += robot->name + ": no health report has been heard\n";
-    for (const ComponentView& part : robot->components) {
+    for (const ComponentHealth& part : robot->components) {
       const bool component = command::is_component(part.name);
       if (!component) note = "POLICY -: no component of the agent; restart and policy do not take it\n";
-      rows.push_back({robot->name, part.name, word(part.phase),
+      rows.push_back({robot->name, part.name, word(part.state),
                       !component       ? "-"
                       : part.automatic ? "auto"
                                        : "manual",

@@ -81,15 +81,14 @@ void write_seeds(const std::string& folder) {
   later.at += 1.0;
   later.robots[0].x = 3.0F;
   later.robots.pop_back();
-  later.notices.push_back({.id = 4, .robot = "r2", .code = "idle"});
+  later.notices.push_back({{.code = "idle", .robot = "r2"}, 4});
   write('c', line_of({{"snapshot", json_of(world)}}) + "\n");
   write('c', whole);
   write('c', whole + line_of({{"delta", difference(encoded(world), encoded(later)).json}}) + "\n");
   write('c', R"({"hello":{"station":"op1","domain":77,"link":"mesh_500k","interfaces":["lo"],"peers":[]}})"
              "\n");
-  write('c',
-        line_of({{"notice", json_of(Notice{.id = 3, .robot = "r1", .code = "blocked", .text = "every"})}}) +
-            "\n");
+  write('c', line_of({{"notice", json_of(Notice{{.code = "blocked", .text = "every", .robot = "r1"}, 3})}}) +
+                 "\n");
   write('c', R"({"id":1,"begun":true})"
              "\n"
              R"({"id":1,"exit":0,"text":"r1: done\n","error":"","answers":[{"robot":"r1","accepted":true}]})"

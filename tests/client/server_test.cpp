@@ -73,7 +73,7 @@ TEST_F(ServerTest, AnOutcomeIsNotLostInAFloodOfNotices) {
   std::promise<void> asked;
   strand_->post([this, go = asked.get_future().share()] {
     go.wait();
-    const Notice notice{.text = std::string(2000, 'x')};
+    const Notice notice{{.text = std::string(2000, 'x')}};
     for (int i = 0; i < 20000; ++i) server_->notify(notice);  // faster than anybody reads
   });
   reader.say({{"id", 1}, {"do", "up"}});

@@ -20,7 +20,7 @@ class AttentionTest : public testing::Test {
       world_.robots.push_back(mine(robot(name, 0, 0)));
       world_.robots.back().mode = "waypoint";
       world_.robots.back().moving_allowed = true;
-      world_.robots.back().goal_phase = station::GoalPhase::active;
+      world_.robots.back().goal_state = contract::GoalState::active;
     }
   }
   station::Robot& r(int number) { return world_.robots[static_cast<std::size_t>(number) - 1]; }
@@ -37,7 +37,7 @@ class AttentionTest : public testing::Test {
     return out;
   }
   void block(int number) {
-    r(number).goal_phase = station::GoalPhase::blocked;
+    r(number).goal_state = contract::GoalState::blocked;
     r(number).reason = Reason::blocked;
     r(number).moving_allowed = false;
   }

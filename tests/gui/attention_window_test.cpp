@@ -90,7 +90,7 @@ TEST_F(AttentionWindow, LaterHidesARowAndANewNotificationShowsItAgain) {
 TEST_F(AttentionWindow, AWindowThatIsOpenedLaterShowsWhatHappenedBefore) {
   Control late(sink);
   station::World world = ten_robots();
-  world.notices = {{.id = 7, .age = 65.0, .robot = "r4", .code = "blocked", .text = "no way", .mine = true}};
+  world.notices = {{{.code = "blocked", .text = "no way", .robot = "r4"}, 7, 65.0, true}};
   late.add_notice(world.notices[0]);  // It came by itself before the snapshot that has it.
   late.show(std::make_shared<station::World>(world), 500.0);
   EXPECT_EQ(late.log()->rowCount(), 1);
@@ -105,7 +105,7 @@ TEST_F(AttentionWindow, AWindowThatIsOpenedLaterShowsWhatHappenedBefore) {
   late.show(std::make_shared<station::World>(world), 501.0);
   EXPECT_EQ(late.log()->rowCount(), 1) << "once";
   late.show_link(false, 0.0, "ended");
-  world.notices = {{.id = 1, .robot = "r1", .code = "arrived", .text = "another run", .mine = true}};
+  world.notices = {{{.code = "arrived", .text = "another run", .robot = "r1"}, 1, 0.0, true}};
   late.show_link(true, 0.0, "");
   late.show(std::make_shared<station::World>(world), 502.0);
   EXPECT_EQ(late.log()->rowCount(), 2) << "another run of the station counts from 1";

@@ -73,8 +73,8 @@ TEST(Details, HandARobotOverToAStationThatIsHeard) {
 
 TEST(Details, RemoveAnAreaOnlyByANameThatIsOne) {
   station::World world = ten_robots();
-  world.robots[0].areas = {{.name = "shaft", .kind = "keep_out"},
-                           {.name = "a --all; stop", .kind = "keep_in"}};
+  world.robots[0].areas = {{.name = "shaft", .kind = AreaKind::keep_out},
+                           {.name = "a --all; stop", .kind = AreaKind::keep_in}};
   const auto rows = details_of(world, {"r1"}, 0.0);
   EXPECT_EQ(find(rows, "area shaft")->action.line, "area r1 remove shaft");
   EXPECT_EQ(find(rows, "area a --all; stop")->action.line, "");

@@ -30,7 +30,7 @@ class DriveWindow : public Window {
   static station::World manual(const std::string& name) {
     station::World world = ten_robots();
     for (station::Robot& robot : world.robots)
-      if (robot.name == name) robot.mode = "smart_joystick", robot.goal_phase = station::GoalPhase::none;
+      if (robot.name == name) robot.mode = "smart_joystick", robot.goal_state = contract::GoalState::none;
     return world;
   }
   void set_pad(const Gamepad::State& state) {
@@ -210,8 +210,10 @@ TEST_F(DriveWindow, TheControllerVibratesForUrgentAlertsAndForObstaclesOfTheDriv
   begin();
   const auto notice = [&](const char* robot, const char* code) {
     rumble = 0.0;
-    control.add_notice(
-        station::Notice{.id = ++notices, .robot = robot, .code = code, .text = code, .mine = true});
+    station::Notice heard{{.code = code, .text = code, .robot = robot}};
+    heard.id = ++notices;
+    heard.mine = true;
+    control.add_notice(heard);
   };
   notice("r4", "arrived");
   notice("r4", "obstacle_near");

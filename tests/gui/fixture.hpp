@@ -23,8 +23,18 @@ inline station::Robot robot(const std::string& name, float x, float y) {
   out.battery = 0.82F;
   out.mode = "hold";
   for (const char* mode : {"hold", "manual", "smart_joystick", "waypoint", "explore"})
-    out.choices.push_back({.mode = mode, .available = true});
+    out.options.push_back({.mode = mode, .available = true});
   return out;
+}
+
+inline station::Notice blocked_notice() {
+  return {{.severity = contract::Severity::warning,
+           .code = "blocked",
+           .text = "every path is blocked",
+           .robot = "r4"},
+          0,
+          0.0,
+          true};
 }
 
 inline station::Robot mine(station::Robot out) {
@@ -42,15 +52,15 @@ inline station::World ten_robots() {
   r1.mode = "waypoint";
   r1.moving_allowed = true;
   r1.vx = 0.8F;
-  r1.goal_phase = station::GoalPhase::active;
+  r1.goal_state = contract::GoalState::active;
   r1.goal = {9.0, 4.0, 0.0};
   station::Robot r2 = mine(robot("r2", 5, 3));
   r2.platform = "legged";
   r2.stopped = true;
   r2.stops = {"op2"};
   r2.reason = Reason::stopped;
-  for (station::ModeChoice& choice : r2.choices)
-    if (choice.mode != "hold") choice = {.mode = choice.mode, .reason = Reason::stopped};
+  for (station::ModeOption& option : r2.options)
+    if (option.mode != "hold") option = {.mode = option.mode, .reason = Reason::stopped};
   station::Robot r3 = robot("r3", 12, 4);
   r3.platform = "tracked";
   r3.holder = "op2";
@@ -58,11 +68,11 @@ inline station::World ten_robots() {
   r3.mode = "waypoint";
   r3.moving_allowed = true;
   r3.vx = 0.4F;
-  r3.goal_phase = station::GoalPhase::active;
+  r3.goal_state = contract::GoalState::active;
   r3.goal = {8.0, 8.0, 0.0};
   station::Robot r4 = mine(robot("r4", 16, -2));
   r4.mode = "waypoint";
-  r4.goal_phase = station::GoalPhase::blocked;
+  r4.goal_state = contract::GoalState::blocked;
   r4.goal = {20.0, -2.0, 0.0};
   r4.reason = Reason::blocked;
   r4.locked = true;
@@ -80,9 +90,8 @@ inline station::World ten_robots() {
   station::Robot r8 = robot("r8", 24, 1);
   r8.holder = "op2";
   r8.locked = true;
-  r8.areas = {{.name = "shaft",
-               .kind = "keep_out",
-               .corners = {{21.0F, -1.0F}, {26.0F, -1.0F}, {26.0F, -4.0F}, {21.0F, -4.0F}}}};
+  r8.areas = {
+      {.name = "shaft", .kind = AreaKind::keep_out, .corners = {{21, -1}, {26, -1}, {26, -4}, {21, -4}}}};
   station::Robot r9 = mine(robot("r9", 10, 0));
   r9.troubles = {"planner hung"};
   station::Robot unknown;

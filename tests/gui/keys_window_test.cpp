@@ -45,7 +45,7 @@ class KeysWindow : public Window {
   KeysWindow() {
     station::World world = ten_robots();
     for (station::Robot& robot : world.robots)
-      if (robot.mine) robot.mode = "smart_joystick", robot.goal_phase = station::GoalPhase::none;
+      if (robot.mine) robot.mode = "smart_joystick", robot.goal_state = contract::GoalState::none;
     world.robots[1].stopped = false;
     world.robots[1].stops.clear();
     drive_sink.show(world);

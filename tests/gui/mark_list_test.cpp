@@ -73,7 +73,7 @@ TEST(Marks, PlacesThatAreNoPlacesAreLeftOut) {
       robot.x = wrong;
       robot.goal = {wrong, 0, 0};
       robot.sigma = wrong;
-      for (station::AreaView& area : robot.areas) area.corners[0][0] = wrong;
+      for (Area& area : robot.areas) area.corners[0][0] = wrong;
     }
     world.stations[1].place = {{wrong, 0.0F, 0.0F}};
     Trails trails;
@@ -99,7 +99,7 @@ TEST(Marks, AnUnsureRobotHasACircleOfTwoSigma) {
 TEST(Marks, AnActiveGoalIsSolidAndAKeptOneDashed) {
   for (const bool active : {true, false}) {
     station::World world{.robots = {mine(robot("r1", 10, 0))}};
-    world.robots[0].goal_phase = active ? station::GoalPhase::active : station::GoalPhase::kept;
+    world.robots[0].goal_state = active ? contract::GoalState::active : contract::GoalState::kept;
     world.robots[0].goal = {12, 2, 0};
     const MarkList marks = marks_of(scene_of(world));
     ASSERT_FALSE(marks.shapes.empty());
@@ -111,11 +111,11 @@ TEST(Marks, AnActiveGoalIsSolidAndAKeptOneDashed) {
 TEST(Marks, ARouteIsDashedWhereNothingWasSeenYet) {
   station::World world{.robots = {mine(robot("r1", 10, 0))}};
   station::Robot& r1 = world.robots[0];
-  r1.goal_phase = station::GoalPhase::active;
+  r1.goal_state = contract::GoalState::active;
   r1.goal_id = 3;
   r1.goal = {20, 10, 0};
   // It was sent a metre behind the robot.
-  r1.route = {.goal_id = 3, .points = {{9, 0, 0}, {20, 0, 0}, {20, 10, 0}}, .unknown = 0b10, .corners = 3};
+  r1.route = {.goal_id = 3, .corners = 3, .points = {{9, 0, 0}, {20, 0, 0}, {20, 10, 0}}, .unknown = 0b10};
   const MarkList marks = marks_of(scene_of(world));
   ASSERT_GE(marks.shapes.size(), 2U);
   EXPECT_EQ(marks.shapes[0].points, (std::vector<Point>{{500, 300}, {700, 300}}));
@@ -129,7 +129,7 @@ TEST(Marks, ARouteIsDashedWhereNothingWasSeenYet) {
 
 TEST(Route, WhatLiesBehindDoesNotCount) {
   station::Robot r1 = robot("r1", 3, 0);
-  r1.route = {.points = {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}}, .unknown = 0b10, .corners = 4};
+  r1.route = {.corners = 4, .points = {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}}, .unknown = 0b10};
   const station::RouteRest rest = station::rest_of_route(r1);
   EXPECT_NEAR(rest.length, 4.0, 1e-6);
   EXPECT_NEAR(rest.unknown_length, 3.0, 1e-6);

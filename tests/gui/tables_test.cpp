@@ -19,9 +19,8 @@ TEST(Tables, AMatrixHasAPlaceForEachComponentOfAnyRobot) {
   station::World world;
   world.robots = {{.name = "r1", .mine = true}, {.name = "r2", .lost = true}};
   station::HealthReport report;
-  report.robots = {
-      {.robot = "r1", .components = {{.name = "planner", .phase = station::ComponentPhase::up}}},
-      {.robot = "r2", .components = {{.name = "map", .phase = station::ComponentPhase::hung, .hung = 1}}}};
+  report.robots = {{.robot = "r1", .components = {{.name = "planner", .state = PartState::up}}},
+                   {.robot = "r2", .components = {{.name = "map", .state = PartState::hung, .hung = 1}}}};
   const HealthTable table = health_table(report, world);
   EXPECT_THAT(table.columns, ElementsAre("planner", "map"));
   ASSERT_EQ(table.cells.size(), 6U);

@@ -10,22 +10,21 @@
 namespace adit::gui {
 
 inline station::HealthReport health_of_ten() {
-  using Phase = station::ComponentPhase;
   station::HealthReport report;
   for (int i = 1; i <= 9; ++i) {
     station::RobotHealth robot{.robot = "r" + std::to_string(i)};
     for (const char* name : {"agent", "command", "planner", "router", "sensors", "map"})
-      robot.components.push_back({.name = name, .phase = Phase::up, .healthy = true, .automatic = true});
-    if (i == 2) robot.components[3] = {.name = "router", .phase = Phase::waiting, .restarts = 1};
-    if (i == 3) robot.components[5] = {.name = "map", .phase = Phase::starting, .automatic = true};
+      robot.components.push_back({.name = name, .state = PartState::up, .healthy = true, .automatic = true});
+    if (i == 2) robot.components[3] = {.name = "router", .state = PartState::waiting, .restarts = 1};
+    if (i == 3) robot.components[5] = {.name = "map", .state = PartState::starting, .automatic = true};
     if (i == 4)
       robot.components[2] = {.name = "planner",
-                             .phase = Phase::failed,
+                             .state = PartState::failed,
                              .restarts = 3,
                              .text = "an exception: the costmap has no cell at the robot"};
     if (i == 9)
       robot.components[2] = {.name = "planner",
-                             .phase = Phase::hung,
+                             .state = PartState::hung,
                              .automatic = true,
                              .silent_for = 4.2F,
                              .restarts = 2,

@@ -199,12 +199,8 @@ TEST_F(TabsTest, ANoteIsTypedWithoutGivingCommands) {
 }
 
 TEST_F(TabsTest, TheLogIsFiltered) {
-  control.add_notice({.robot = "r4",
-                      .level = station::Level::warning,
-                      .code = "blocked",
-                      .text = "every path is blocked",
-                      .mine = true});
-  control.add_notice({.robot = "r3", .code = "taken", .text = "taken by op2"});
+  control.add_notice(blocked_notice());
+  control.add_notice({{.code = "taken", .text = "taken by op2", .robot = "r3"}});
   control.add_command(
       {.id = 1, .ended = true, .line = "mode r1 explore", .mine = true, .text = "r1: exploring\n"});
   const auto lines = [&] { return column(control.tabs()->log()->lines(), 4); };
@@ -296,7 +292,7 @@ TEST_F(TabsTest, HostileNamesAndTwoHundredRobotsDoNoHarm) {
     station::RobotHealth robot{.robot = name};
     for (int k = 0; k < 40; ++k)
       robot.components.push_back({.name = i % 2 == 0 ? "c" + std::to_string(k) : std::string(200, 'W'),
-                                  .phase = static_cast<station::ComponentPhase>(k % 5),
+                                  .state = static_cast<PartState>(k % 5),
                                   .silent_for = 1e30F,
                                   .text = "<img src='file:///etc/passwd'>"});
     health.robots.push_back(robot);

@@ -390,11 +390,7 @@ TEST_F(Window, TwoHundredRobotsAreShownInTime) {
 TEST_F(Window, ACommandOfAnotherProgramIsInTheLog) {
   control.add_command(
       {.id = 1, .ended = true, .line = "take r1", .front_end = "shell", .pid = 1, .text = "r1: taken\n"});
-  control.add_notice({.robot = "r4",
-                      .level = station::Level::warning,
-                      .code = "blocked",
-                      .text = "every path is blocked",
-                      .mine = true});
+  control.add_notice(blocked_notice());
   EXPECT_EQ(control.log()->rowCount(), 2);
   EXPECT_EQ(control.log()->data(control.log()->index(1, 0), Qt::UserRole + 3).toString(), "in another shell");
   for (int i = 0; i < 10000; ++i) control.add_remark("line");
@@ -412,12 +408,8 @@ TEST_F(Window, NothingIsRepaintedWhileNothingChanges) {
 
 // What the user page shows; also what the author looked at.
 TEST_F(Window, PicturesOfBothThemesAndSizes) {
-  control.add_notice({.robot = "r4",
-                      .level = station::Level::warning,
-                      .code = "blocked",
-                      .text = "every path is blocked",
-                      .mine = true});
-  control.add_notice({.robot = "r3", .code = "taken", .text = "taken by op2"});
+  control.add_notice(blocked_notice());
+  control.add_notice({{.code = "taken", .text = "taken by op2", .robot = "r3"}});
   control.add_command({.id = 1,
                        .ended = true,
                        .line = "mode r6 explore",

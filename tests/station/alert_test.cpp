@@ -72,7 +72,8 @@ class AlertQueueTest : public testing::Test {
   }
   Robot& r(int number) { return world_.robots[static_cast<std::size_t>(number) - 1]; }
   Priority say(const std::string& robot, const std::string& code, bool mine = true) {
-    return queue_.add({.robot = robot, .code = code, .text = robot + " " + code, .mine = mine}, world_, now_);
+    return queue_.add({{.code = code, .text = robot + " " + code, .robot = robot}, 0, 0.0, mine}, world_,
+                      now_);
   }
   void pass(double seconds) {
     now_ += seconds;
@@ -125,7 +126,7 @@ TEST_F(AlertQueueTest, AHungComponentThatEndsItsAgentIsOneRowInEitherOrder) {
   say("r1", "component_hung");
   EXPECT_THAT(shown(), ElementsAre("escalated r1", "escalated r2", "component_hung r3", "component_hung r1"))
       << "a component that hangs later is another matter";
-  queue_.add({.robot = "r3", .level = Level::warning, .mine = true}, world_, now_);
+  queue_.add({{.severity = Severity::warning, .robot = "r3"}, 0, 0.0, true}, world_, now_);
   EXPECT_EQ(queue_.size(), 5U) << "a notification without a code is part of nothing";
 }
 
@@ -238,10 +239,12 @@ TEST_F(AlertQueueTest, WhatConcernsAnotherOperatorIsNoAlert) {
 }
 
 TEST_F(AlertQueueTest, ACodeOfALaterVersionCountsByItsLevel) {
-  EXPECT_EQ(queue_.add({.level = Level::info, .code = "of_a_later_version", .mine = true}, world_, now_),
-            Priority::know);
-  EXPECT_EQ(queue_.add({.level = Level::error, .code = "of_a_later_version", .mine = true}, world_, now_),
-            Priority::soon);
+  EXPECT_EQ(
+      queue_.add({{.severity = Severity::info, .code = "of_a_later_version"}, 0, 0.0, true}, world_, now_),
+      Priority::know);
+  EXPECT_EQ(
+      queue_.add({{.severity = Severity::error, .code = "of_a_later_version"}, 0, 0.0, true}, world_, now_),
+      Priority::soon);
 }
 
 TEST_F(AlertQueueTest, AFloodStaysBoundedAndKeepsWhatIsUrgent) {

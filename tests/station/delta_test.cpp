@@ -56,9 +56,9 @@ class Fiction {
       if (now_and_then(0.3)) robot.battery = static_cast<float>(random_.uniform());
     }
     if (now_and_then(0.2)) {
-      robot.goal_phase = now_and_then(0.5) ? GoalPhase::none : GoalPhase::active;
-      robot.goal = robot.goal_phase == GoalPhase::none ? std::array{0.0, 0.0, 0.0}
-                                                       : std::array{1.5, 2.5, std::nan("")};
+      robot.goal_state = now_and_then(0.5) ? GoalState::none : GoalState::active;
+      robot.goal = {0.0, 0.0, 0.0};
+      if (robot.goal_state != GoalState::none) robot.goal = {1.5, 2.5, std::nan("")};
     }
     if (now_and_then(0.2))
       robot.stops = now_and_then(0.5) ? std::vector<std::string>{} : std::vector<std::string>{"op2"};
@@ -170,7 +170,7 @@ TEST_F(DeltaTest, RobotsAreInNaturalOrder) {
 }
 
 TEST_F(DeltaTest, AGoalOnTheGroundIsNotNewEachTime) {
-  before_.robots[0].goal_phase = GoalPhase::active;
+  before_.robots[0].goal_state = GoalState::active;
   before_.robots[0].goal = {1.0, 2.0, std::nan("")};
   EXPECT_EQ(after(before_).urgency, Urgency::none);
 }

@@ -9,7 +9,6 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
-#include "basestation/fleet/traffic.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/report/json.hpp"
 #include "basestation/report/table.hpp"
@@ -126,9 +125,9 @@ TEST(Fleet, HealthNamesWhatIsNotUp) {
   fleet.hear(health, at(0s));
   const RobotView& robot = *fleet.robot("r1");
   ASSERT_EQ(robot.components.size(), 3u);
-  EXPECT_EQ(robot.components[1].phase, ComponentPhase::hung);
+  EXPECT_EQ(robot.components[1].state, PartState::hung);
   EXPECT_EQ(robot.components[1].hung, 1u);
-  EXPECT_EQ(robot.components[2].phase, ComponentPhase::failed) << "a state of a later version";
+  EXPECT_EQ(robot.components[2].state, PartState::failed) << "a state of a later version";
   EXPECT_THAT(health_text({&robot}), testing::HasSubstr("HUNG"));
   EXPECT_THAT(health_json(robot)["components"][0]["policy"], "manual");
   EXPECT_THAT(json_of(described(robot, Time{}))["troubles"], testing::SizeIs(2));
@@ -176,7 +175,7 @@ TEST(Fleet, ARouteIsWhatTheRobotFollowsUntilItSaysOtherwise) {
   route.points({30, 0, 0, 30, -40, 5});
   route.unknown(2);
   fleet.hear(route, at(1s));
-  const RouteView& heard = fleet.robot("r1")->route;
+  const contract::Route& heard = fleet.robot("r1")->route;
   ASSERT_EQ(heard.points.size(), 3U);
   EXPECT_FLOAT_EQ(heard.points[2][0], 4.0F);
   EXPECT_FLOAT_EQ(heard.points[2][1], -2.0F);
@@ -189,7 +188,7 @@ TEST(Fleet, ARouteIsWhatTheRobotFollowsUntilItSaysOtherwise) {
   route.from({0, 0, 0});
   route.points(std::vector<std::int16_t>(230, 7));
   fleet.hear(route, at(2s));
-  EXPECT_EQ(fleet.robot("r1")->route.points.size(), RouteView::kMaxCorners);
+  EXPECT_EQ(fleet.robot("r1")->route.points.size(), contract::Route::kMaxCorners);
   route.corners(0);
   route.points({});
   fleet.hear(route, at(3s));
@@ -385,7 +384,7 @@ TEST(Fleet, TextFromTheRadioIsMadeSafe) {
   fleet.hear(sample, at(0s));
   EXPECT_EQ(fleet.notices().back().text.find('\x1b'), std::string::npos);
   EXPECT_LE(fleet.notices().back().text.size(), 240U);
-  EXPECT_EQ(fleet.notices().back().level, Level::error);
+  EXPECT_EQ(fleet.notices().back().severity, Severity::error);
 }
 
 TEST(Fleet, AnotherStationWithOurNameIsReportedOnceAMinute) {
@@ -411,24 +410,6 @@ TEST(Fleet, SilentStationsAreForgotten) {
   EXPECT_EQ(fleet.stations().size(), 1U);
   fleet.check(Time(61s));
   EXPECT_TRUE(fleet.stations().empty());
-}
-
-TEST(Traffic, RatesAreDifferencesOverTime) {
-  TrafficMeter meter;
-  wire::WireCounters counters;
-  counters.topics = {
-      {.topic = "adit/command", .peer = {1}, .samples_out = 10, .bytes_out = 1000},
-      {.topic = "adit/command", .peer = {2}, .samples_out = 5, .bytes_out = 500, .malformed = 3}};
-  counters.discovery_out = 100;
-  EXPECT_EQ(meter.read("op1", counters, {}, Time(1s)).total_out, 0.0F);
-  counters.topics[0].bytes_out += 200;
-  counters.topics[1].bytes_out += 100;
-  counters.discovery_out += 50;
-  const TrafficView view = meter.read("op1", counters, {}, Time(3s));
-  ASSERT_EQ(view.topics.size(), 1U);
-  EXPECT_FLOAT_EQ(view.topics[0].bytes_out, 150.0F);
-  EXPECT_FLOAT_EQ(view.discovery_out, 25.0F);
-  EXPECT_EQ(view.malformed, 3U);
 }
 
 }  // namespace

@@ -69,7 +69,10 @@ class Draw {
   }
 
   Robot robot() {
-    Robot r{.name = text(), .age = number(), .lost = flag()};
+    Robot r;
+    r.name = text();
+    r.age = number();
+    r.lost = flag();
     if (flag()) describe(r);
     r.platform = text();
     r.software = text();
@@ -90,19 +93,19 @@ class Draw {
     r.stopped = flag();
     r.moving_allowed = flag();
     r.reason = reason();
-    r.goal_phase = one_of(GoalPhase::reached);
+    r.goal_state = one_of(GoalState::reached);
     r.goal_id = static_cast<std::uint32_t>(below(1U << 31));
-    if (r.goal_phase != GoalPhase::none) r.goal = {number(), number(), number()};
+    if (r.goal_state != GoalState::none) r.goal = {number(), number(), number()};
     r.exploration.phase = one_of(ExplorationPhase::ended);
     if (r.exploration.phase != ExplorationPhase::none)
       r.exploration = {r.exploration.phase, reason(), single(), single(), 7, 9};
-    r.choices.resize(below(3));
-    for (ModeChoice& choice : r.choices) choice = {text(), flag(), reason()};
+    r.options.resize(below(3));
+    for (ModeOption& option : r.options) option = {text(), flag(), reason()};
     r.yields = flag();
     r.yields_to = text();
     r.convoy = texts();
     r.areas.resize(below(3));
-    for (AreaView& area : r.areas) area = this->area();
+    for (Area& area : r.areas) area = this->area();
     r.troubles = texts();
     return r;
   }
@@ -119,7 +122,8 @@ class Draw {
     }
     w.notices.resize(below(4));
     for (Notice& notice : w.notices)
-      notice = {integer(), number(), text(), text(), one_of(Level::error), text(), reason(), text(), flag()};
+      notice = {
+          {text(), one_of(Severity::error), text(), reason(), text(), text()}, integer(), number(), flag()};
     if (flag()) w.traffic[text()] = {number(), number(), number()};
     return w;
   }
@@ -154,18 +158,18 @@ class Draw {
     r.localisation = one_of(Localisation::lost);
     if (r.localisation != Localisation::off) r.sigma = number();
   }
-  void route(RouteView& r) {
-    r = {.goal_id = static_cast<std::uint32_t>(integer()), .points = {}, .unknown = 5, .corners = 40};
-    r.points.resize(1 + below(RouteView::kMaxCorners));
+  void route(contract::Route& r) {
+    r = {.goal_id = static_cast<std::uint32_t>(integer()), .corners = 40, .points = {}, .unknown = 5};
+    r.points.resize(1 + below(contract::Route::kMaxCorners));
     for (auto& point : r.points) point = {single(), single(), single()};
   }
-  AreaView area() {
-    AreaView a{.name = text(), .kind = flag() ? "prefer" : "keep_out"};
+  Area area() {
+    Area a{.name = text(), .kind = one_of(AreaKind::prefer)};
     a.corners.resize(below(5));
     for (auto& corner : a.corners) corner = {single(), single()};
     if (flag()) a.z_min = -1.5F;
     if (flag()) a.z_max = 2.25F;
-    if (a.kind == "prefer") a.weight = single();
+    if (a.kind == AreaKind::prefer) a.weight = single();
     return a;
   }
   Random random_;
@@ -199,10 +203,11 @@ TEST(ModelJson, ARobotComesBackAsItWas) {
 }
 
 TEST(ModelJson, AModeIsAvailableWhereTheStationWouldEnterIt) {
-  const Robot robot{.name = "r1",
-                    .choices = {{.mode = "manual", .reason = Reason::joystick_stale},
-                                {.mode = "smart_joystick", .reason = Reason::stopped},
-                                {.mode = "waypoint", .reason = Reason::goal_missing}}};
+  Robot robot;
+  robot.name = "r1";
+  robot.options = {{.mode = "manual", .reason = Reason::joystick_stale},
+                   {.mode = "smart_joystick", .reason = Reason::stopped},
+                   {.mode = "waypoint", .reason = Reason::goal_missing}};
   const json modes = json_of(robot)["modes"];
   EXPECT_EQ(modes[0]["available"], true) << "the station adds the stick, as its text says";
   EXPECT_EQ(modes[0]["reason"], "none");
@@ -238,7 +243,7 @@ TEST(ModelJson, EveryReasonComesBackAndThatOfANewerVersionIsNotNone) {
   for (int number = 0; number < 2000; ++number) {
     const auto reason = static_cast<Reason>(number);
     if (name(reason) == "unknown") continue;
-    EXPECT_EQ(sent(json_of(Notice{.reason = reason}), notice_from)->reason, reason);
+    EXPECT_EQ(sent(json_of(Notice{{.reason = reason}}), notice_from)->reason, reason);
   }
   const auto later = notice_from({{"reason", "of_a_later_version"}});
   ASSERT_TRUE(later);
@@ -246,7 +251,7 @@ TEST(ModelJson, EveryReasonComesBackAndThatOfANewerVersionIsNotNone) {
 }
 
 TEST(ModelJson, BytesThatAreNoTextAreReplaced) {
-  const auto back = sent(json_of(Notice{.text = "a\xff\xfe b"}), notice_from);
+  const auto back = sent(json_of(Notice{{.text = "a\xff\xfe b"}}), notice_from);
   ASSERT_TRUE(back);
   EXPECT_THAT(back->text, testing::StartsWith("a"));
 }

@@ -14,31 +14,34 @@ using testing::HasSubstr;
 
 World fleet(int robots) {
   World world{.station = "op1", .link = "wifi"};
-  for (int i = 1; i <= robots; ++i)
-    world.robots.push_back({.name = "r" + std::to_string(i),
-                            .age = 0.1,
-                            .lost = i == 3,
-                            .platform = "wheeled",
-                            .located = true,
-                            .x = 1.25F,
-                            .y = -200.5F,
-                            .yaw = 1.57F,
-                            .vx = 0.5F,
-                            .wz = 0.1F,
-                            .holder = "op1",
-                            .mine = true,
-                            .locked = i == 1,
-                            .mode = i == 2 ? "smart_joystick" : "waypoint",
-                            .moving_allowed = true,
-                            .goal_phase = GoalPhase::active,
-                            .goal = {12.0, 0.5, std::nan("")}});
+  for (int i = 1; i <= robots; ++i) {
+    Robot& robot = world.robots.emplace_back();
+    robot.name = "r" + std::to_string(i);
+    robot.age = 0.1;
+    robot.lost = i == 3;
+    robot.platform = "wheeled";
+    robot.located = true;
+    robot.x = 1.25F;
+    robot.y = -200.5F;
+    robot.yaw = 1.57F;
+    robot.vx = 0.5F;
+    robot.wz = 0.1F;
+    robot.holder = "op1";
+    robot.mine = true;
+    robot.locked = i == 1;
+    robot.mode = i == 2 ? "smart_joystick" : "waypoint";
+    robot.moving_allowed = true;
+    robot.goal_state = GoalState::active;
+    robot.goal = {12.0, 0.5, std::nan("")};
+  }
   for (int i = 0; i < 30; ++i)
-    world.notices.push_back({.age = 100.0 - i,
-                             .robot = "r1",
-                             .level = Level::warning,
-                             .code = "taken",
-                             .text = "notice " + std::to_string(i),
-                             .mine = true});
+    world.notices.push_back({{.severity = Severity::warning,
+                              .code = "taken",
+                              .text = "notice " + std::to_string(i),
+                              .robot = "r1"},
+                             0,
+                             100.0 - i,
+                             true});
   return world;
 }
 
@@ -120,7 +123,9 @@ TEST(Render, TheSelectedRobotStaysInView) {
 
 TEST(Render, RobotsOfWhichLittleIsKnownDoNoHarm) {
   EXPECT_THAT(text(render({}, {}, 24, 80, false)), HasSubstr("no robot has been heard"));
-  const World odd{.robots = {{}, {.name = "r5", .stops = {"", "op2"}}}, .notices = {{}}};
+  World odd{.robots = {{}, {}}, .notices = {{}}};
+  odd.robots[1].name = "r5";
+  odd.robots[1].stops = {"", "op2"};
   EXPECT_EQ(render(odd, {.selected = ""}, 24, 80, true).size(), 24U);
 }
 

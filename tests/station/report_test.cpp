@@ -149,7 +149,7 @@ TEST(Report, HealthOfSeveralRobotsIsOneTable) {
   first.name = "r1";
   second.name = "r2";
   silent.name = "r3";
-  first.components = second.components = {{.name = "planner", .phase = ComponentPhase::up, .text = {}}};
+  first.components = second.components = {{.name = "planner", .state = PartState::up, .text = {}}};
   const std::string text = health_text({&first, &second, &silent});
   EXPECT_EQ(text.find("COMPONENT"), text.rfind("COMPONENT"));
   EXPECT_THAT(text, HasSubstr("r2     planner"));
@@ -160,7 +160,7 @@ TEST(Report, HealthMarksWhatCannotBeRestarted) {
   RobotView robot;
   robot.name = "r1";
   const auto part = [](const char* name) {
-    return ComponentView{.name = name, .phase = ComponentPhase::up, .automatic = true, .text = {}};
+    return ComponentHealth{.name = name, .state = PartState::up, .automatic = true, .text = {}};
   };
   robot.components = {part("planner")};
   EXPECT_THAT(health_text({&robot}), testing::Not(HasSubstr("no component")));

@@ -41,9 +41,8 @@ class ReportDraw {
     for (RobotHealth& robot : report.robots) {
       robot.robot = text();
       robot.components.resize(below(4));
-      for (ComponentView& part : robot.components)
-        part = {text(), static_cast<ComponentPhase>(below(5)), flag(), flag(), single(), count(), count(),
-                text()};
+      for (ComponentHealth& part : robot.components)
+        part = {text(), static_cast<PartState>(below(5)), flag(), flag(), single(), count(), count(), text()};
     }
     return report;
   }
@@ -60,7 +59,8 @@ class ReportDraw {
       if (flag()) agent.classes_out[text()] = number();
       if (flag()) agent.hears[text()] = number();
       agent.topics.resize(below(3));
-      for (TopicRate& topic : agent.topics) topic = {text(), single(), single(), single(), single(), count()};
+      for (TopicTraffic& topic : agent.topics)
+        topic = {text(), single(), single(), single(), single(), count()};
     }
     report.links.resize(below(3));
     for (LinkReport& link : report.links) {

@@ -87,12 +87,12 @@ Cell holder_cell(const Robot& robot, std::size_t width) {
 }
 
 Cell goal_cell(const Robot& robot, std::size_t width) {
-  const GoalPhase phase = robot.goal_phase;
-  if (phase == GoalPhase::none) return {padded("-", width), kDim};
+  const GoalState phase = robot.goal_state;
+  if (phase == GoalState::none) return {padded("-", width), kDim};
   const std::string where = fixed(robot.goal[0], 1) + "," + fixed(robot.goal[1], 1);
-  const char* colour = phase == GoalPhase::blocked ? kRed : phase == GoalPhase::reached ? kGreen : "";
-  const std::string shown = phase == GoalPhase::active    ? "to"
-                            : phase == GoalPhase::reached ? "at"
+  const char* colour = phase == GoalState::blocked ? kRed : phase == GoalState::reached ? kGreen : "";
+  const std::string shown = phase == GoalState::active    ? "to"
+                            : phase == GoalState::reached ? "at"
                                                           : to_string(phase);
   return {padded(shown + " " + where, width), colour};
 }
@@ -162,10 +162,10 @@ void detail(Page& page, const World& world, const WatchState& state) {
   if (robot->reason != Reason::none && robot->stops.empty())
     cells.push_back({"does not move: " + std::string(name(robot->reason)) + "  ", kYellow});
   std::string areas;
-  for (const AreaView& area : robot->areas)
-    areas += (areas.empty() ? "" : ", ") + area.name + " " + area.kind;
+  for (const Area& area : robot->areas)
+    areas += (areas.empty() ? "" : ", ") + area.name + " " + std::string(name(area.kind));
   if (!areas.empty()) cells.push_back({"areas: " + areas + "  ", kCyan});
-  if (const ExplorationView& explored = robot->exploration; explored.phase != ExplorationPhase::none)
+  if (const contract::Exploration& explored = robot->exploration; explored.phase != ExplorationPhase::none)
     cells.push_back({std::string(to_string(explored.phase)) + " about " + fixed(100.0 * explored.share, 0) +
                          "%, " + std::to_string(explored.open) + " frontiers left  ",
                      kCyan});
@@ -173,11 +173,11 @@ void detail(Page& page, const World& world, const WatchState& state) {
     cells.push_back({robot->lease_left >= 0.0F ? "locked, lapses in " + fixed(robot->lease_left, 0) + " s  "
                                                : "locked  "});
   std::string closed;
-  for (const ModeChoice& mode : robot->choices)
+  for (const ModeOption& mode : robot->options)
     if (!can_enter(mode))
       closed += (closed.empty() ? "" : ", ") + mode.mode + " (" + std::string(name(mode.reason)) + ")";
   if (!closed.empty()) cells.push_back({"no " + closed, kDim});
-  const bool no_goal = robot->goal_phase == GoalPhase::none || robot->goal_phase == GoalPhase::kept;
+  const bool no_goal = robot->goal_state == GoalState::none || robot->goal_state == GoalState::kept;
   if (const std::string motion = motion_text(*robot); !motion.empty() && no_goal)
     cells.insert(cells.begin() + 1, {motion + "  ", kGreen});
   if (cells.size() == 1) cells.push_back({"ready", kGreen});
@@ -189,10 +189,10 @@ void notices(Page& page, const World& world, std::size_t room) {
   if (room < 2) return;
   std::size_t shown = 0;
   for (auto it = world.notices.rbegin(); it != world.notices.rend() && shown < room - 1; ++it, ++shown) {
-    const char* colour = !it->mine                     ? kDim
-                         : it->level == Level::error   ? kRed
-                         : it->level == Level::warning ? kYellow
-                                                       : "";
+    const char* colour = !it->mine                           ? kDim
+                         : it->severity == Severity::error   ? kRed
+                         : it->severity == Severity::warning ? kYellow
+                                                             : "";
     const std::string line = " " + padded(short_age(it->age), 5, true) + padded(it->robot, 6);
     page.line({{line}, {it->text.empty() ? it->code : it->text, colour}});
   }

@@ -92,7 +92,7 @@ class Dashboard {
     World world = world_;
     for (const auto& [when, text] : others_)
       world.notices.push_back(
-          {.age = std::chrono::duration<double>(Clock::now() - when).count(), .text = text, .mine = true});
+          {{.text = text}, 0, std::chrono::duration<double>(Clock::now() - when).count(), true});
     std::ranges::stable_sort(world.notices, std::ranges::greater{}, &Notice::age);
     return world;
   }

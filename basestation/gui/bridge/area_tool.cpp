@@ -14,7 +14,7 @@ std::string free_area_name(const station::World& world) {
     const std::string name = "a" + std::to_string(number);
     const bool used = std::any_of(world.robots.begin(), world.robots.end(), [&](const station::Robot& robot) {
       return std::any_of(robot.areas.begin(), robot.areas.end(),
-                         [&](const station::AreaView& area) { return area.name == name; });
+                         [&](const Area& area) { return area.name == name; });
     });
     if (!used) return name;
   }

@@ -12,7 +12,7 @@
 namespace adit::gui {
 namespace {
 
-using station::GoalPhase;
+using station::GoalState;
 using station::Robot;
 
 std::string upper(std::string text) {
@@ -52,7 +52,7 @@ void headline(Card& card, const Robot& robot) {
   const bool waits = drives && !robot.moving_allowed && robot.reason != Reason::none;
   if (card.contact == Contact::lost) return set("LOST", Token::bad, "square", true);
   if (robot.stopped || !robot.stops.empty()) return set("STOP", Token::bad, "square", true);
-  if (robot.goal_phase == GoalPhase::blocked || robot.reason == Reason::blocked)
+  if (robot.goal_state == GoalState::blocked || robot.reason == Reason::blocked)
     return set("BLOCKED", Token::bad, "square", true);
   if (!robot.troubles.empty())
     return set(upper(robot.mode), Token::warn, "triangle",
@@ -89,11 +89,11 @@ Words detail(const Card& card, const Robot& robot, double age) {
             " frontiers left"};
   const std::string motion = station::motion_text(robot);
   const bool by_hand = station::is_by_hand(robot.mode);
-  if ((robot.goal_phase == GoalPhase::active || robot.goal_phase == GoalPhase::kept) &&
+  if ((robot.goal_state == GoalState::active || robot.goal_state == GoalState::kept) &&
       !(by_hand && !motion.empty()))
-    return {(robot.goal_phase == GoalPhase::active ? "to " : "goal kept: ") +
+    return {(robot.goal_state == GoalState::active ? "to " : "goal kept: ") +
             station::fixed(robot.goal[0], 1) + " " + station::fixed(robot.goal[1], 1)};
-  if (robot.goal_phase == GoalPhase::reached) return {"arrived"};
+  if (robot.goal_state == GoalState::reached) return {"arrived"};
   if (!motion.empty()) return {motion, motion.substr(0, motion.find(' '))};
   return {"ready"};
 }
@@ -125,7 +125,7 @@ Card card_of(const Robot& robot, int number, double silent, double stale_after) 
   const bool battery = robot.battery >= 0.0F && robot.battery <= 1.0F;
   card.battery = battery ? station::fixed(100.0 * robot.battery, 0) + " %" : "-";
   card.speed = robot.located ? station::fixed(std::hypot(robot.vx, robot.vy), 1) + " m/s" : "-";
-  const bool goal = robot.goal_phase != GoalPhase::none && robot.goal_phase != GoalPhase::reached;
+  const bool goal = robot.goal_state != GoalState::none && robot.goal_state != GoalState::reached;
   if (goal && robot.located) {
     const station::RouteRest route = station::rest_of_route(robot);
     const double straight = std::hypot(robot.goal[0] - robot.x, robot.goal[1] - robot.y);

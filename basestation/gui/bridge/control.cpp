@@ -245,10 +245,10 @@ void Control::show_notice(const station::Notice& notice) {
   if (urgent || (notice.code == "obstacle_near" && notice.robot == drive_.robot().toStdString()))
     drive_.warn_hand(urgent);
   tabs_.add_notice(notice);
-  const QString kind = !notice.mine                              ? "dim"
-                       : notice.level == station::Level::error   ? "bad"
-                       : notice.level == station::Level::warning ? "warn"
-                                                                 : "text";
+  const QString kind = !notice.mine                                    ? "dim"
+                       : notice.severity == station::Severity::error   ? "bad"
+                       : notice.severity == station::Severity::warning ? "warn"
+                                                                       : "text";
   log_row(kind, text_of(notice.robot), one_line(notice.text.empty() ? notice.code : notice.text), notice.age);
 }
 

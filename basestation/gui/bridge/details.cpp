@@ -15,7 +15,7 @@ namespace {
 
 using command::joined;
 using station::fixed;
-using station::GoalPhase;
+using station::GoalState;
 using station::kUnknownPlace;
 using station::Robot;
 using station::World;
@@ -49,9 +49,9 @@ std::string localisation(const Robot& robot) {
 }
 
 std::string goal(const Robot& robot) {
-  std::string text = std::string(to_string(robot.goal_phase)) + ": " + fixed(robot.goal[0], 1) + " " +
+  std::string text = std::string(to_string(robot.goal_state)) + ": " + fixed(robot.goal[0], 1) + " " +
                      fixed(robot.goal[1], 1);
-  if (robot.located && robot.goal_phase != GoalPhase::reached)
+  if (robot.located && robot.goal_state != GoalState::reached)
     text += ", " + fixed(std::hypot(robot.goal[0] - robot.x, robot.goal[1] - robot.y), 1) + " m away";
   return text;
 }
@@ -71,7 +71,7 @@ std::vector<Detail> rows_of(const Robot& robot, const World& world, double silen
   add("mode", mode(robot));
   add("holder", holder(robot));
   if (!robot.stops.empty()) add("stopped by", joined(robot.stops, ""));
-  if (robot.goal_phase != GoalPhase::none) add("goal", goal(robot));
+  if (robot.goal_state != GoalState::none) add("goal", goal(robot));
   if (const std::string way = station::route_text(robot); !way.empty()) add("route", way);
   if (robot.exploration.phase != station::ExplorationPhase::none)
     add("explored", exploration_text(robot.exploration));
@@ -91,8 +91,9 @@ std::vector<Detail> rows_of(const Robot& robot, const World& world, double silen
                      : DetailAction{"Allow", "yield " + robot.name + " on"});
   else if (robot.yields || !robot.yields_to.empty())
     add("make way", yields(robot));
-  for (const station::AreaView& area : robot.areas)
-    add("area " + area.name, area.kind + ", " + std::to_string(area.corners.size()) + " corners",
+  for (const Area& area : robot.areas)
+    add("area " + area.name,
+        std::string(name(area.kind)) + ", " + std::to_string(area.corners.size()) + " corners",
         robot.mine && command::valid_name(area.name)
             ? DetailAction{"Remove", "area " + robot.name + " remove " + area.name, true}
             : DetailAction{});

@@ -11,8 +11,7 @@
 namespace adit::gui {
 namespace {
 
-using station::ComponentPhase;
-using station::ComponentView;
+using station::ComponentHealth;
 
 constexpr double kFullQueue = 0.2;  // Queued airtime from which a link counts as full, s.
 
@@ -20,25 +19,25 @@ std::string count_text(std::uint32_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
-void mark(const ComponentView& part, HealthCell& cell) {
-  cell.text = word(part.phase);
-  switch (part.phase) {
-    case ComponentPhase::up:
+void mark(const ComponentHealth& part, HealthCell& cell) {
+  cell.text = word(part.state);
+  switch (part.state) {
+    case PartState::up:
       cell.shape = part.healthy ? "disc" : "triangle";
       cell.token = part.healthy ? Token::ok : Token::warn;
       if (!part.healthy) cell.text = "up, not well";
       break;
-    case ComponentPhase::starting:
+    case PartState::starting:
       cell.shape = "ring";
       cell.token = Token::text;
       break;
-    case ComponentPhase::waiting:
+    case PartState::waiting:
       cell.shape = "triangle";
       cell.token = Token::warn;
       cell.text = "waits";
       break;
-    case ComponentPhase::failed:
-    case ComponentPhase::hung:
+    case PartState::failed:
+    case PartState::hung:
       cell.shape = "square";
       cell.token = Token::bad;
       break;
@@ -94,7 +93,7 @@ std::string csv_cell(std::string text) {
 HealthTable health_table(const station::HealthReport& report, const station::World& world) {
   HealthTable table;
   for (const station::RobotHealth& robot : report.robots)
-    for (const ComponentView& part : robot.components)
+    for (const ComponentHealth& part : robot.components)
       if (table.columns.size() < kMaxColumns &&
           std::find(table.columns.begin(), table.columns.end(), part.name) == table.columns.end())
         table.columns.push_back(part.name);
@@ -108,7 +107,7 @@ HealthTable health_table(const station::HealthReport& report, const station::Wor
     for (const std::string& column : table.columns) {
       HealthCell cell{.robot = robot.robot, .component = column, .old = old};
       const auto part = std::find_if(robot.components.begin(), robot.components.end(),
-                                     [&](const ComponentView& one) { return one.name == column; });
+                                     [&](const ComponentHealth& one) { return one.name == column; });
       if (part != robot.components.end()) mark(*part, cell);
       table.cells.push_back(std::move(cell));
     }
@@ -121,7 +120,7 @@ HealthDetail health_detail(const station::HealthReport& report, const station::W
   HealthDetail out;
   for (const station::RobotHealth& one : report.robots) {
     if (one.robot != robot) continue;
-    for (const ComponentView& part : one.components) {
+    for (const ComponentHealth& part : one.components) {
       if (part.name != component) continue;
       HealthCell cell;
       mark(part, cell);

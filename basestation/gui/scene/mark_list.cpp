@@ -13,7 +13,7 @@
 namespace adit::gui {
 namespace {
 
-using station::GoalPhase;
+using contract::GoalState;
 using station::Robot;
 
 constexpr double kMinRobotPixels = 14.0;  // So that a robot can be seen and hit at any scale.
@@ -27,7 +27,7 @@ class Drawer {
   MarkList draw() {
     const station::World& world = *scene_.world;
     for (const Robot& robot : world.robots)
-      for (const station::AreaView& area : robot.areas) draw_area(area);
+      for (const Area& area : robot.areas) draw_area(area);
     for (const Robot& robot : world.robots) draw_trail(robot);
     for (const station::StationSummary& station : world.stations) draw_station(station);
     for (const Robot& robot : world.robots) draw_goal(robot);
@@ -62,14 +62,14 @@ class Drawer {
     return std::to_string(numbers_[static_cast<std::size_t>(&robot - scene_.world->robots.data())]);
   }
 
-  void draw_area(const station::AreaView& area) {
+  void draw_area(const Area& area) {
     Shape shape{.closed = true,
-                .line = area.kind == "keep_out"  ? Token::bad
-                        : area.kind == "keep_in" ? Token::ok
-                                                 : Token::goal,
+                .line = area.kind == AreaKind::keep_out  ? Token::bad
+                        : area.kind == AreaKind::keep_in ? Token::ok
+                                                         : Token::goal,
                 .width = 1.5,
-                .dashed = area.kind == "prefer",
-                .filled = area.kind == "keep_out",
+                .dashed = area.kind == AreaKind::prefer,
+                .filled = area.kind == AreaKind::keep_out,
                 .fill = Token::bad,
                 .fill_opacity = 0.15};
     for (const auto& corner : area.corners) {
@@ -81,9 +81,9 @@ class Drawer {
     for (const Shape& known : out_.shapes)
       if (known.closed && known.points == shape.points) return;
     out_.labels.push_back({.at = {shape.points[0].x, shape.points[0].y - 8},
-                           .text = area.name + (area.kind == "keep_out"  ? ": keep out"
-                                                : area.kind == "keep_in" ? ": keep in"
-                                                                         : ": prefer"),
+                           .text = area.name + (area.kind == AreaKind::keep_out  ? ": keep out"
+                                                : area.kind == AreaKind::keep_in ? ": keep in"
+                                                                                 : ": prefer"),
                            .token = Token::dim});
     out_.shapes.push_back(std::move(shape));
   }
@@ -123,19 +123,19 @@ class Drawer {
   }
 
   void draw_goal(const Robot& robot) {
-    if (robot.goal_phase == GoalPhase::none || robot.goal_phase == GoalPhase::reached) return;
+    if (robot.goal_state == GoalState::none || robot.goal_state == GoalState::reached) return;
     if (!drawable(robot.goal[0], robot.goal[1])) return;
     const Point at = camera_.to_screen(robot.goal[0], robot.goal[1]);
     if (robot.located && drawable(robot.x, robot.y) && !draw_route(robot, at))
       out_.shapes.push_back({.points = {camera_.to_screen(robot.x, robot.y), at},
                              .line = Token::goal,
                              .width = 1.5,
-                             .dashed = robot.goal_phase != GoalPhase::active,
+                             .dashed = robot.goal_state != GoalState::active,
                              .opacity = 0.8});
     Shape mark = diamond(at, 9.0, Token::goal);
     out_.shapes.push_back(mark);
     out_.labels.push_back({.at = at, .text = number(robot), .on_fill = true});
-    if (robot.goal_phase == GoalPhase::blocked) cross_out(out_, at);
+    if (robot.goal_state == GoalState::blocked) cross_out(out_, at);
   }
 
   /// The way along the route; dashed where nothing was seen yet, and beyond what the robot sent of it.
@@ -150,7 +150,7 @@ class Drawer {
       if (!drawable(next_x, next_y)) return true;
       if (line.points.empty()) line.points.push_back(camera_.to_screen(x, y));
       line.points.push_back(camera_.to_screen(next_x, next_y));
-      line.dashed = rest.unknown[leg] || robot.goal_phase != GoalPhase::active;
+      line.dashed = rest.unknown[leg] || robot.goal_state != GoalState::active;
       if (leg + 1 < rest.unknown.size() && rest.unknown[leg + 1] == rest.unknown[leg]) continue;
       out_.shapes.push_back(line);
       line.points.clear();

@@ -12,7 +12,7 @@
 namespace adit::gui {
 namespace {
 
-using station::GoalPhase;
+using contract::GoalState;
 using station::Robot;
 
 constexpr double kMinPixels = 14.0;  // Of a robot.
@@ -55,18 +55,18 @@ class OrbitDrawer {
   }
 
   void draw_areas(const Robot& robot) {
-    for (const station::AreaView& area : robot.areas) {
+    for (const Area& area : robot.areas) {
       std::vector<Point3> corners;
       for (const auto& corner : area.corners)
         if (drawable(corner[0], corner[1])) corners.push_back({corner[0], corner[1], height_of(robot)});
       if (corners.size() < 3 || corners.size() != area.corners.size()) continue;
-      const bool out = area.kind == "keep_out";
+      const bool out = area.kind == AreaKind::keep_out;
       add(corners, {.closed = true,
-                    .line = out                      ? Token::bad
-                            : area.kind == "keep_in" ? Token::ok
-                                                     : Token::goal,
+                    .line = out                              ? Token::bad
+                            : area.kind == AreaKind::keep_in ? Token::ok
+                                                             : Token::goal,
                     .width = 1.5,
-                    .dashed = area.kind == "prefer",
+                    .dashed = area.kind == AreaKind::prefer,
                     .filled = out,
                     .fill = Token::bad,
                     .fill_opacity = 0.15});
@@ -97,7 +97,7 @@ class OrbitDrawer {
   }
 
   void draw_goal(const Robot& robot, const std::string& number) {
-    if (robot.goal_phase == GoalPhase::none || robot.goal_phase == GoalPhase::reached) return;
+    if (robot.goal_state == GoalState::none || robot.goal_state == GoalState::reached) return;
     if (!drawable(robot.goal[0], robot.goal[1])) return;
     const double z = std::abs(robot.goal[2]) < 1e5 ? robot.goal[2] : height_of(robot);
     const Point3 goal{robot.goal[0], robot.goal[1], z};
@@ -106,12 +106,12 @@ class OrbitDrawer {
     if (!seen) return;
     out_.shapes.push_back(diamond(seen->at, 9.0, Token::goal));
     out_.labels.push_back({.at = seen->at, .text = number, .on_fill = true});
-    if (robot.goal_phase == GoalPhase::blocked) cross_out(out_, seen->at);
+    if (robot.goal_state == GoalState::blocked) cross_out(out_, seen->at);
   }
 
   /// The rest of the route, or a line to the goal; dashed where nothing was seen yet.
   void draw_way(const Robot& robot, const Point3& goal) {
-    const bool active = robot.goal_phase == GoalPhase::active;
+    const bool active = robot.goal_state == GoalState::active;
     const auto line = [&](const Point3& from, const Point3& to, bool dashed) {
       add({from, to}, {.line = Token::goal, .width = 1.5, .dashed = dashed || !active, .opacity = 0.8});
     };
