@@ -3,15 +3,17 @@
 # usage: tests/live/isolated.sh PROGRAM ARGUMENT...   runs a live test with a network of its own (loopback alone) and with
 #                                                     folders of its own; what it started ends with it, and when it
 #                                                     passes its folders are removed
-#        tests/live/isolated.sh --possible            exit status 0 where such a network can be made
+#        tests/live/isolated.sh --possible            exit status 0 where such a network can be made; otherwise says why
 # Where it cannot be made, tests run one after the other: each holds a lock.
 set -u
 PATH="$PATH:/usr/sbin:/sbin"
 separate=(unshare --net --pid --fork --kill-child --mount-proc)
+# The root of a chroot is often no mount point, so its propagation cannot be made private: then only that of /proc is.
+mountpoint -q / || separate+=(--propagation unchanged)
 [ "$EUID" = 0 ] || separate+=(--user --map-root-user)
 
 case "$*" in
-  --possible) exec "${separate[@]}" ip link set lo up 2> /dev/null ;;
+  --possible) exec "${separate[@]}" ip link set lo up 2>&1 ;;
   *--gtest_list_tests*) exec "$@" ;;
 esac
 
