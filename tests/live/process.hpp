@@ -18,6 +18,11 @@ using Seconds = std::chrono::duration<double>;
 /// more with 1.
 double patience();
 
+/// How often a duration is measured, at most, until it is within the limit of an idle machine: 8, or 1 with a
+/// patience of 1. Load lengthens a duration and nothing shortens it: the shortest of some meets the limit on
+/// a busy machine too, unless the program became slower.
+int max_measurements();
+
 /// What a finished program left.
 struct Finished {
   int exit_code{-1};  ///< Negative: killed by that signal.

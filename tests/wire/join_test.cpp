@@ -2,6 +2,7 @@
 // Members that come, die and come back elsewhere, each a process over Fast DDS: heard by all within 3 s.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -67,13 +68,16 @@ TEST(LiveJoin, TwentyMembersComeToFourAndEachIsHeardByAll) {
   fleet.start("robot", "r2");
   fleet.start("station", "op0");
   EXPECT_LT(fleet.complete(), limit * patience());
+  Seconds shortest = Seconds::max();  // on a busy machine it has to be within the limit too
   for (int i = 0; i < 20; ++i) {
     fleet.start(i % 2 == 0 ? "station" : "robot", "new" + std::to_string(i));
     const Seconds time = fleet.complete();
     std::printf("join %d: %.3f s\n", i, time.count());
     EXPECT_LT(time, limit * patience()) << "join " << i;
+    shortest = std::min(shortest, time);
     fleet.kill_last();
   }
+  EXPECT_LT(shortest, limit);
 }
 
 /// Two machines with a cable between them: network namespaces, each held by a process.
@@ -128,13 +132,16 @@ TEST(LiveJoin, AKilledMemberIsHeardAgainAtAnotherAddress) {
   fleet.start("station", "op0", "10.77.0.1", &machines.left);
   fleet.start("robot", "r1", "10.77.0.2", &machines.right);
   EXPECT_LT(fleet.complete(), limit * patience());
+  Seconds shortest = Seconds::max();
   for (const char* address : {"10.77.0.3", "10.77.0.2", "10.77.0.3"}) {
     fleet.kill_last();
     fleet.start("robot", "r1", address, &machines.right);
     const Seconds time = fleet.complete();
     std::printf("back at %s: %.3f s\n", address, time.count());
     EXPECT_LT(time, limit * patience()) << address;
+    shortest = std::min(shortest, time);
   }
+  EXPECT_LT(shortest, limit);
 }
 
 }  // namespace
