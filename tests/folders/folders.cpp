@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <vector>
@@ -40,5 +41,7 @@ std::string scratch_folder() {
   if (::mkdtemp(path.data()) == nullptr) throw std::runtime_error("no folder can be made: " + path);
   return folders.all.emplace_back(path);
 }
+
+bool all_seeds() { return std::getenv("ADIT_ALL_SEEDS") != nullptr; }
 
 }  // namespace adit

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
+#include "tests/folders/folders.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace adit::nav::test {
@@ -340,11 +339,9 @@ TEST(CollisionMonitor, WaitsForWhoCrossesAndGoesOn) {
 }
 
 TEST(CollisionMonitor, AnObstacleOfFewNoisyReturnsIsKeptFartherOff) {
-  // At a blunt wall end and a corner, for a long time: one ring of 360 with 2 cm of noise; ADIT_ALL_SEEDS: 6
-  // seeds.
-  const unsigned seeds = std::getenv("ADIT_ALL_SEEDS") != nullptr ? 6 : 2;
+  // At a blunt wall end and a corner, for a long time: one ring of 360 with 2 cm of noise.
   for (const Platform& p : {wheeled(), tracked(), legged()})
-    for (unsigned seed = 1; seed <= seeds; ++seed)
+    for (std::uint64_t seed = 1; seed <= seeds(2, 6); ++seed)
       for (const double yaw : {0.0, 0.5, -0.9}) {
         Seen seen({{1.2, 1.5, 0.1, 3}, {0.9, 1.1, -1.6, -0.5}}, p, {0, 0, yaw});
         seen.random.seed(seed);

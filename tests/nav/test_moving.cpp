@@ -2,9 +2,8 @@
 // Robots among people and other robots in the simulated world, and in worlds where nothing moves.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "sim/world/generate.hpp"
+#include "tests/folders/folders.hpp"
 #include "tests/nav/sim_drive.hpp"
 
 namespace adit::nav::test {
@@ -17,9 +16,6 @@ sim::SimulationParams planar(std::uint64_t seed, std::vector<sim::PersonSpec> pe
   params.people = std::move(people);
   return params;
 }
-
-/// One seed, or with ADIT_ALL_SEEDS in the environment (tests of label long) `all`.
-std::uint64_t seeds(std::uint64_t all) { return std::getenv("ADIT_ALL_SEEDS") != nullptr ? all : 1; }
 
 /// 40 m long, along x, its middle at y = 0.
 std::shared_ptr<const sim::World> corridor(double width) {
@@ -58,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(All, StaticWorld, testing::Values("corridor", "cave", "
                          [](const auto& each) { return std::string(each.param); });
 
 TEST(Moving, AmongPeopleWhoYieldTwoRobotsReachTheirGoalsAndTouchNobody) {
-  for (std::uint64_t seed = 1; seed <= seeds(4); ++seed) {
+  for (std::uint64_t seed = 1; seed <= seeds(1, 4); ++seed) {
     SimDrive d(
         corridor(4.0), {{"r1", wheeled(), {0, 0, 0}}, {"r2", wheeled(), {30, 0, M_PI}}},
         planar(seed,
@@ -71,7 +67,7 @@ TEST(Moving, AmongPeopleWhoYieldTwoRobotsReachTheirGoalsAndTouchNobody) {
 }
 
 TEST(Moving, WhoYieldsToNobodyFindsTheRobotStanding) {
-  for (std::uint64_t seed = 1; seed <= seeds(4); ++seed) {
+  for (std::uint64_t seed = 1; seed <= seeds(1, 4); ++seed) {
     SimDrive d(corridor(4.0), {{"r1", wheeled(), {0, 0, 0}}},
                planar(seed, {{{{24, 0.2}, {-3, -0.2}}, 1.5, false}, {{{20, -1.2}, {2, 1.2}}, 1.2, false}}));
     d.robots[0].goal = Eigen::Vector2d(25, 0);
@@ -90,7 +86,7 @@ TEST(Moving, RobotsHeadOnPassEachOther) {
                         {2.2, wheeled(), wheeled()},
                         {2.2, wheeled(), legged()},
                         {2.4, tracked(), tracked()}})
-    for (std::uint64_t seed = 1; seed <= seeds(3); ++seed) {
+    for (std::uint64_t seed = 1; seed <= seeds(1, 3); ++seed) {
       SimDrive d(corridor(c.width), {{"r1", c.a, {0, 0, 0}}, {"r2", c.b, {16, 0, M_PI}}}, planar(seed));
       d.robots[0].goal = Eigen::Vector2d(15.5, 0);
       d.robots[1].goal = Eigen::Vector2d(0.5, 0);

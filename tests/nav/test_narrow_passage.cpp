@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
+#include "tests/folders/folders.hpp"
 #include "tests/nav/route_drive.hpp"
 #include "tests/nav/route_world.hpp"
 
@@ -159,13 +158,10 @@ TEST(NarrowPassage, AWallWhoseFootWasTakenTooHighIsNoStep) {
   EXPECT_TRUE(planner.plan({1.5, 3, 0}, {4.5, 3, 0}).found());
 }
 
-/// Whether cases begin from everywhere: ADIT_ALL_SEEDS in the environment (tests of label long).
-bool from_everywhere() { return std::getenv("ADIT_ALL_SEEDS") != nullptr; }
-
 /// A hall with a wall across it, and a gap in that, so much wider than the robot; started from aside.
 void expect_passed(const Platform& platform, double wider) {
   const double half = (platform.width + wider) / 2;
-  for (const double y : from_everywhere() ? std::vector{1.0, 2.0, 3.0, 4.0, 5.0} : std::vector{1.0, 4.0}) {
+  for (const double y : all_seeds() ? std::vector{1.0, 2.0, 3.0, 4.0, 5.0} : std::vector{1.0, 4.0}) {
     BoxWorld world{{{-0.2, 0, 0, 6},
                     {10, 10.2, 0, 6},
                     {0, 10, -0.2, 0},
@@ -184,7 +180,7 @@ TEST(NarrowPassage, ARobotPassesAGapFifteenCentimetresWiderThanItself) {
 }
 
 TEST(NarrowPassage, ACarPassesAGapTenCentimetresWiderThanItself) {
-  for (const double wider : from_everywhere() ? std::vector{0.10, 0.15, 0.20, 0.25, 0.30} : std::vector{0.10})
+  for (const double wider : all_seeds() ? std::vector{0.10, 0.15, 0.20, 0.25, 0.30} : std::vector{0.10})
     expect_passed(car(), wider);
 }
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 
 #include "sim/rehearsal/rehearsal.hpp"
@@ -11,11 +10,6 @@
 #include "tests/folders/folders.hpp"
 
 namespace adit::sim {
-
-/// Whether cases run all their seeds, each for as long as its scenario: ADIT_ALL_SEEDS in the environment
-/// (tests of label long).
-inline bool all_seeds() { return std::getenv("ADIT_ALL_SEEDS") != nullptr; }
-inline std::uint64_t seeds(std::uint64_t few, std::uint64_t all) { return all_seeds() ? all : few; }
 
 /// Ends a run one second after all its expectations are settled, and with all_seeds() never.
 inline std::function<bool(const RunState&)> once_decided() {
