@@ -132,15 +132,18 @@ bool Process::pump(Seconds limit) {
   return out_open || err_open;
 }
 
-bool Process::wait_for_output(const std::string& text, Seconds limit) {
+bool Process::wait_until(const std::function<bool()>& condition, Seconds limit) {
   const auto end = SteadyClock::now() + limit * patience();
   for (;;) {
-    if (out_.find(text) != std::string::npos || err_.find(text) != std::string::npos) return true;
+    if (condition()) return true;
     if (SteadyClock::now() > end) return false;
-    if (!pump(Seconds(0.05)) && !running()) {
-      return out_.find(text) != std::string::npos || err_.find(text) != std::string::npos;
-    }
+    if (!pump(Seconds(0.05)) && !running()) return condition();
   }
+}
+
+bool Process::wait_for_output(const std::string& text, Seconds limit) {
+  return wait_until(
+      [&] { return out_.find(text) != std::string::npos || err_.find(text) != std::string::npos; }, limit);
 }
 
 Finished Process::wait(Seconds limit) {

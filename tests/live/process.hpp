@@ -44,8 +44,10 @@ class Process {
   void signal(int number);
   /// Waits for the end; kills it after `limit`, stretched (exit_code is then -SIGKILL).
   Finished wait(Seconds limit);
-  /// Reads its output until `text` has been seen on stdout or stderr; false after `limit`, stretched, or at
-  /// its end.
+  /// Reads its output until `condition` holds, which is asked again after each output and every 50 ms; false
+  /// after `limit`, stretched, or at its end.
+  bool wait_until(const std::function<bool()>& condition, Seconds limit);
+  /// The same until `text` has been seen on stdout or stderr.
   bool wait_for_output(const std::string& text, Seconds limit);
   const std::string& out() const { return out_; }
   const std::string& err() const { return err_; }
