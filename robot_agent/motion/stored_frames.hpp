@@ -25,10 +25,9 @@ struct StoredFrames {
   Pose2 T_map_odom{};
   std::uint32_t odom_epoch{};              ///< Rises when the odometry begins again elsewhere.
   std::optional<OdometrySample> newest{};  ///< The last pose in the odometry frame; unset: there was none.
-  /// Height of the odometry frame's origin in the map, m; unset: written by a version without this field.
+  /// Height of the odometry frame's origin in the map, m; unset: unknown.
   std::optional<double> height{};
-  /// Rises with each change of T_map_odom; also 0 if written by a version without this field.
-  std::uint32_t map_epoch{};
+  std::uint32_t map_epoch{};  ///< Rises with each change of T_map_odom.
   /// The driver's odometry in the odometry frame; the identity with `perception: off`.
   Pose3 T_odom_driver{};
   /// False: after a restart the robot did not recognise its surroundings, and waits for its pose.

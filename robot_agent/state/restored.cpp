@@ -20,13 +20,12 @@ std::optional<ReadSnapshot> read_any(const store::State& state) {
   switch (state.found) {
     case store::LoadStatus::good:
       return decode_snapshot(state.payload);
-    case store::LoadStatus::older:
-      return state.version == 2 ? decode_snapshot_v2(state.payload) : std::nullopt;
     case store::LoadStatus::torn:
     case store::LoadStatus::corrupt:
     case store::LoadStatus::foreign:
       return decode_snapshot(state.remains);
     case store::LoadStatus::nothing:
+    case store::LoadStatus::older:
     case store::LoadStatus::newer:
     case store::LoadStatus::unreadable:
       break;
@@ -82,7 +81,7 @@ Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
   const bool newer = !read->unknown.empty();
   Restored r = usable(std::move(*read));
   r.generation = state.generation;
-  if (state.found != store::LoadStatus::good && state.found != store::LoadStatus::older) {
+  if (state.found != store::LoadStatus::good) {
     r.damaged = true;
     r.text = std::string(store::name(state.found)) +
              (r.text.empty() ? ", every entry could be read" : "; " + r.text);

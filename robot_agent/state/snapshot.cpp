@@ -20,9 +20,9 @@ using store::Unpacker;
 /// sanitized().
 struct Row {
   store::SectionTag tag;
-  std::uint16_t version;  ///< Rises when the layout of the payload changes.
+  std::uint16_t version;  ///< Rises when the layout of the payload changes; only this layout is read.
   const char* name;       ///< As operators read it in `state_damaged`.
-  bool always;  ///< Every program that writes version 3 writes this section: if it is missing, it was lost.
+  bool always;  ///< Every state has this section: if it is missing, it was lost.
   /// Calls `add` with each payload; most rows have one.
   void (*write)(const Snapshot& snapshot, const std::function<void(const Packer&)>& add);
   /// Reads one payload into the snapshot. Returns false and leaves the snapshot unchanged if the payload is
@@ -229,37 +229,11 @@ std::optional<ReadSnapshot> decode_snapshot(std::span<const std::uint8_t> bytes)
       continue;
     }
     Unpacker in(section.payload);
-    if (!row->read(in, read.snapshot)) lose(read, *row);
+    if (section.version < row->version || !row->read(in, read.snapshot)) lose(read, *row);
   }
   for (const Row& row : kRows)
     if (row.always && std::find(seen.begin(), seen.end(), row.tag) == seen.end()) lose(read, row);
   assume_safe(read);
-  return read;
-}
-
-std::optional<ReadSnapshot> decode_snapshot_v2(std::span<const std::uint8_t> bytes) {
-  Unpacker in(bytes);
-  KeptAuthority authority = fields::authority(in);
-  authority.stops = fields::stops(in);
-  if (!in.good()) return std::nullopt;
-  ReadSnapshot read{};
-  Snapshot& s = read.snapshot;
-  s.authority = std::move(authority);
-  const auto rest = [&](const char* name, auto& to, auto value) {
-    if (in.good())
-      to = std::move(value);
-    else
-      read.lost.emplace_back(name);
-  };
-  rest("mode and goal", s.behaviour, fields::behaviour(in));
-  rest("boot and battery", s.boot, in.get<std::uint64_t>());
-  if (const auto battery = in.get<std::uint8_t>(); in.good()) s.battery = battery;
-  for (std::size_t left = in.count(KeptAnswers::kParticipants); left > 0 && in.good(); --left)
-    if (KeptAnswers from = fields::answers(in); in.good()) s.answers.push_back(std::move(from));
-  if (!in.done()) read.lost.emplace_back("answers to a station");
-  const KeptAuthority written = s.authority;
-  s = sanitized(std::move(s));
-  if (s.authority != written) return std::nullopt;  // The authority is invalid.
   return read;
 }
 

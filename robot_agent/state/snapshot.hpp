@@ -58,7 +58,7 @@ struct Snapshot {
   bool operator==(const Snapshot&) const = default;
 };
 
-/// Version 3: sections (core/store/sections.hpp), see snapshot.cpp. Version 2 is still read.
+/// The payload is a list of sections (core/store/sections.hpp), see snapshot.cpp.
 inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 3, 24 * 1024};
 
 /// The result of decoding a state file.
@@ -82,8 +82,5 @@ store::Bytes encode(const Snapshot& snapshot);
 
 /// Decodes the sections that are intact. Returns nothing if the directory of sections cannot be read.
 std::optional<ReadSnapshot> decode_snapshot(std::span<const std::uint8_t> bytes);
-
-/// Decodes the payload of version 2, which has no sections: everything after the first error is lost.
-std::optional<ReadSnapshot> decode_snapshot_v2(std::span<const std::uint8_t> bytes);
 
 }  // namespace adit::agent

@@ -167,13 +167,9 @@ StoredFrames place(Unpacker& in) {
     newest.stamp = in.get<std::uint64_t>();
     newest.received = from_stamp(in.get<std::uint64_t>());
   }
-  if (in.done()) return kept;  // Version 1 of the section ends here.
   if (in.flag()) kept.height = in.number();
-  if (in.done()) return kept;  // Version 2 of the section ends here.
   kept.map_epoch = in.get<std::uint32_t>();
-  if (in.done()) return kept;  // Version 3 of the section ends here.
   get(in, kept.T_odom_driver);
-  if (in.done()) return kept;  // Version 4 of the section ends here.
   kept.recognised = in.flag();
   return kept;
 }

@@ -3,8 +3,7 @@
 #include "core/store/pack.hpp"
 #include "robot_agent/state/snapshot.hpp"
 
-/// The fields of a snapshot, packed and unpacked: shared by all versions of the state file. Private to
-/// robot_agent/state.
+/// The fields of a snapshot, packed and unpacked. Private to robot_agent/state.
 namespace adit::agent::fields {
 
 inline constexpr std::size_t kName = 32;

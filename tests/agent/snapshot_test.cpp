@@ -9,7 +9,6 @@
 #include "core/store/sections.hpp"
 #include "core/time/random.hpp"
 #include "robot_agent/state/restored.hpp"
-#include "robot_agent/state/snapshot_fields.hpp"
 
 namespace adit::agent {
 namespace {
@@ -57,14 +56,6 @@ Snapshot full() {
   a.floor = 5;
   a.answers = {{11, Reason::none, ""}, {12, Reason::locked, "locked by op2"}};
   s.answers = {a};
-  return s;
-}
-
-/// Version 2 had no place and no areas.
-Snapshot without_place() {
-  Snapshot s = full();
-  s.place.reset();
-  s.behaviour.areas = {};
   return s;
 }
 
@@ -223,34 +214,6 @@ TEST(Snapshot, of_a_place_that_is_none_has_no_odometry) {
   EXPECT_EQ(sanitized(s).place, StoredFrames{});
 }
 
-TEST(Snapshot, of_older_places_is_read) {
-  struct Older {
-    std::uint16_t version;
-    std::size_t missing;  ///< Bytes at the end: of `recognised`, of the driver's odometry, of the map's
-                          ///< epoch, and of the height.
-    std::optional<double> height;
-  };
-  constexpr std::size_t kPose = 7 * 8;
-  for (const Older& older : {Older{4, 1, 3.5}, Older{3, kPose + 1, 3.5}, Older{2, kPose + 5, 3.5},
-                             Older{1, kPose + 14, std::nullopt}}) {
-    auto list = store::unpack_sections(encode(full()));
-    for (store::Section& section : list.good) {
-      if (store::tag_text(section.tag) != "PLAC") continue;
-      section.version = older.version;
-      section.payload.resize(section.payload.size() - older.missing);
-    }
-    const auto read = decode_snapshot(store::pack_sections(list.good));
-    ASSERT_TRUE(read) << older.version;
-    EXPECT_THAT(read->lost, IsEmpty()) << older.version;
-    Snapshot expected = full();
-    expected.place->height = older.height;
-    if (older.version < 3) expected.place->map_epoch = 0;
-    if (older.version < 4) expected.place->T_odom_driver = {};
-    expected.place->recognised = true;
-    EXPECT_EQ(read->snapshot, expected) << older.version;
-  }
-}
-
 TEST(Snapshot, without_its_stops_counts_as_stopped) {
   const store::Bytes payload = encode(full());
   auto list = store::unpack_sections(payload);
@@ -287,52 +250,26 @@ TEST(Snapshot, skips_sections_that_it_does_not_know) {
   EXPECT_THAT(read->lost, IsEmpty());
   EXPECT_THAT(read->unknown, ElementsAre("section CONV"));
 
-  for (store::Section& section : list.good)
-    if (store::tag_text(section.tag) == "BEHV") section.version = 9;
-  read = decode_snapshot(store::pack_sections(list.good));
-  ASSERT_TRUE(read);
-  EXPECT_THAT(read->lost, ElementsAre("mode and goal"));
-  EXPECT_EQ(read->snapshot.authority, full().authority);
-}
-
-/// The bytes of version 2, as it wrote them.
-store::Bytes version_2(const Snapshot& s) {
-  store::Packer out;
-  fields::put(out, s.authority);
-  fields::put(out, s.authority.stops);
-  fields::put(out, s.behaviour);
-  out.put(s.boot).put(s.battery).put(static_cast<std::uint16_t>(s.answers.size()));
-  for (const KeptAnswers& from : s.answers) fields::put(out, from);
-  return out.bytes();
-}
-
-TEST(Snapshot, of_version_2_is_read) {
-  const auto read = decode_snapshot_v2(version_2(full()));
-  ASSERT_TRUE(read);
-  EXPECT_EQ(read->snapshot, without_place());
-  EXPECT_THAT(read->lost, IsEmpty());
-}
-
-TEST(Snapshot, of_version_2_with_an_overlong_name_loses_the_answers_alone) {
-  Snapshot s = full();
-  s.answers.front().station = std::string(40, 'x');
-  const auto read = decode_snapshot_v2(version_2(s));
-  ASSERT_TRUE(read);
-  EXPECT_THAT(read->lost, ElementsAre("answers to a station"));
-  EXPECT_EQ(read->snapshot.authority, full().authority);
-  EXPECT_EQ(read->snapshot.behaviour, without_place().behaviour);
+  for (const std::uint16_t version : {0, 9}) {
+    for (store::Section& section : list.good)
+      if (store::tag_text(section.tag) == "BEHV") section.version = version;
+    read = decode_snapshot(store::pack_sections(list.good));
+    ASSERT_TRUE(read);
+    EXPECT_THAT(read->lost, ElementsAre("mode and goal")) << version;
+    EXPECT_EQ(read->snapshot.authority, full().authority);
+    EXPECT_EQ(read->snapshot.behaviour.mode, "hold");
+  }
 }
 
 TEST(Snapshot, takes_any_bytes) {
   Random random(3);
-  const store::Bytes whole = encode(largest()), old = version_2(largest());
+  const store::Bytes intact = encode(largest());
   for (int i = 0; i < 1000; ++i) {
-    const bool sections = random.chance(0.5);
-    store::Bytes junk = sections ? whole : old;
+    store::Bytes junk = intact;
     for (std::uint64_t edits = 1 + random.below(5); edits > 0; --edits)
       junk[random.below(junk.size())] = static_cast<std::uint8_t>(random.next());
     if (random.chance(0.3)) junk.resize(random.below(junk.size()));
-    const auto read = sections ? decode_snapshot(junk) : decode_snapshot_v2(junk);
+    const auto read = decode_snapshot(junk);
     if (!read) continue;
     EXPECT_EQ(sanitized(read->snapshot), read->snapshot);
     EXPECT_LE(encode(read->snapshot).size(), kSnapshotFormat.max_bytes);
@@ -405,16 +342,6 @@ TEST_F(RestoreTest, AFileOfANewerVersionIsNeverDeleted) {
     (void)restore_state(disk);
   }
   EXPECT_EQ(disk->list().value().size(), 8u) << "what is preserved is bounded";
-}
-
-TEST_F(RestoreTest, AFileOfVersion2IsRead) {
-  store::StateFormat format = kSnapshotFormat;
-  format.version = 2;
-  disk->plant(kStateFile, store::encode_envelope(format, 8, version_2(full())));
-  const Restored r = restore_state(disk);
-  EXPECT_FALSE(r.lost || r.damaged);
-  EXPECT_EQ(r.snapshot, without_place());
-  EXPECT_EQ(r.generation, 8u);
 }
 
 TEST_F(RestoreTest, ADamagedByteAnywhereInTheFileLosesOneEntryAtMost) {

@@ -8,7 +8,6 @@
 #include "core/findings/finding.hpp"
 #include "core/store/sections.hpp"
 #include "core/time/random.hpp"
-#include "robot_agent/state/snapshot_fields.hpp"
 #include "tests/findings/some.hpp"
 #include "tests/wire/largest_allocation.hpp"
 
@@ -116,24 +115,6 @@ TEST(StateMutation, AnyBytesInASection) {
     wire::largest_allocation = 0;
     const auto read = decode_snapshot(bytes);
     ASSERT_TRUE(read);
-    check(read, bytes.size());
-    if (testing::Test::HasFatalFailure()) FAIL() << "mutation " << i;
-  }
-}
-
-TEST(StateMutation, AnyBytesOfVersion2) {
-  Random random(3);
-  const Snapshot s = some_state();
-  store::Packer out;
-  fields::put(out, s.authority);
-  fields::put(out, s.authority.stops);
-  fields::put(out, s.behaviour);
-  out.put(s.boot).put(s.battery).put(static_cast<std::uint16_t>(s.answers.size()));
-  for (const KeptAnswers& from : s.answers) fields::put(out, from);
-  for (std::size_t i = mutations(); i > 0; --i) {
-    const Bytes bytes = mutated(out.bytes(), random);
-    wire::largest_allocation = 0;
-    const auto read = decode_snapshot_v2(bytes);
     check(read, bytes.size());
     if (testing::Test::HasFatalFailure()) FAIL() << "mutation " << i;
   }

@@ -202,8 +202,7 @@ void ExploreMode::restore(const KeptBehaviour& kept) {
   const bool complete = in.flag();
   const auto why = in.get<std::uint16_t>();
   const double limit = in.number();
-  std::string area;
-  if (!in.done()) area = in.text(32);  // An earlier version wrote none.
+  const std::string area = in.text(32);
   if (!in.done() || state > static_cast<std::uint8_t>(ExplorationPhase::ended) || after > 2 || !(limit > 0))
     return;
   request_ = {static_cast<AfterExploring>(after), limit, area};
