@@ -2,6 +2,7 @@
 #include "robot_agent/agent.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 
 #include "core/time/random.hpp"
@@ -54,13 +55,14 @@ Result<void> Agent::start() {
 }
 
 void Agent::at_console(const std::string& line, std::function<void(const std::string&)> answer) {
-  std::istringstream words(line);
-  std::string verb, component, policy;
-  words >> verb >> component >> policy;
-  if (verb == "health") return impl_->watch->describe(std::move(answer));
-  if (verb == "restart" || (verb == "policy" && (policy == "auto" || policy == "manual"))) {
-    const auto done = verb == "restart" ? impl_->watch->restart(component)
-                                        : impl_->watch->set_policy(component, policy == "auto");
+  if (line == "health") return impl_->watch->describe(std::move(answer));
+  std::istringstream in(line);
+  const std::vector<std::string> words(std::istream_iterator<std::string>(in), {});
+  const bool restarts = words.size() == 2 && words[0] == "restart";
+  const bool automatic = words.size() == 3 && words[2] == "auto";
+  if (restarts || (words.size() == 3 && words[0] == "policy" && (automatic || words[2] == "manual"))) {
+    const auto done =
+        restarts ? impl_->watch->restart(words[1]) : impl_->watch->set_policy(words[1], automatic);
     return answer(done ? "done\n" : refused_at_console(done.error().text));
   }
   impl_->command_strand().post([context = impl_->context.get(), line, answer = std::move(answer)] {

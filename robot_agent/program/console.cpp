@@ -15,7 +15,6 @@
 #include <cstring>
 #include <mutex>
 #include <optional>
-#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -177,17 +176,6 @@ Console::~Console() {
   (void)!::write(server_->stop.get(), &one, sizeof one);
   server_->thread.join();
   ::unlink(server_->path.c_str());
-}
-
-Result<void> check_console_line(const std::vector<std::string>& words) {
-  static constexpr std::pair<std::string_view, std::size_t> kCommands[] = {
-      {"status", 1}, {"unlock", 1}, {"peers", 1}, {"health", 1}, {"restart", 2}, {"policy", 3}, {"fault", 3}};
-  for (const auto& [name, count] : kCommands)
-    if (words.front() == name && words.size() == count &&
-        (name != "policy" || words[2] == "auto" || words[2] == "manual"))
-      return {};
-  return {Reason::bad_argument,
-          "console takes status, unlock, peers, health, restart COMPONENT or policy COMPONENT auto|manual"};
 }
 
 Result<std::string> ask_console(const std::string& robot, const std::string& line) {

@@ -3,7 +3,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "core/result/result.hpp"
 
@@ -28,9 +27,6 @@ class Console {
   struct Server;
   std::unique_ptr<Server> server_;
 };
-
-/// Checks a line before it is sent. Error: bad_argument, which names all commands.
-Result<void> check_console_line(const std::vector<std::string>& words);
 
 /// Sends a line to the robot's console and returns the answer. Errors: no_answer when no agent of that name
 /// runs here or it does not answer, cannot_write, not_supported with the agent's words when it refuses.

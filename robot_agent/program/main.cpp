@@ -253,15 +253,10 @@ int run_parent(const RobotConfig& config, const Options& options, int argc, char
   return parent.run();
 }
 
-std::string joined(const std::vector<std::string>& words) {
+int ask(const std::string& name, const std::vector<std::string>& words) {
   std::string line;
   for (const std::string& word : words) line += (line.empty() ? "" : " ") + word;
-  return line;
-}
-
-int ask(const std::string& name, const std::vector<std::string>& words) {
-  if (const auto checked = check_console_line(words); !checked) return fail(checked.error(), 2);
-  const auto answer = ask_console(name, joined(words));
+  const auto answer = ask_console(name, line);
   if (!answer) return fail(answer.error(), answer.reason() == Reason::no_answer ? 3 : 1);
   std::cout << *answer;
   return 0;

@@ -208,6 +208,9 @@ TEST_F(SupervisionTest, RestartTakesTheComponentsOfTheHealthReportAndSaysWhyNotT
                                     " is no component of the agent; restart takes agent, command, planner"));
   }
   EXPECT_GT(refused, 0U);
+  for (const char* incomplete : {"restart", "restart planner now", "policy planner", "policy planner on"})
+    EXPECT_THAT(ask(incomplete), testing::MatchesRegex("refused: '" + std::string(incomplete) +
+                                                       "' is no command of the console .*restart COMPONENT.*\n"));
   EXPECT_THAT(ask("policy agent auto"), testing::Not(testing::HasSubstr("takes agent")));
 }
 
