@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace adit {
 
@@ -11,6 +14,15 @@ enum class PerceptionLevel : std::uint8_t {
   odometry,  ///< The pose is that of the lidar-inertial odometry.
   slam,      ///< The same, and the robot builds a map that the stations receive.
 };
+
+/// The words for the levels in files and on command lines, in the order of PerceptionLevel.
+inline const std::vector<std::string> kPerceptionWords{"off", "odometry", "slam"};
+
+/// The level of one of kPerceptionWords.
+inline PerceptionLevel perception_level(const std::string& word) {
+  const auto found = std::find(kPerceptionWords.begin(), kPerceptionWords.end(), word);
+  return static_cast<PerceptionLevel>(found - kPerceptionWords.begin());
+}
 
 /// How well a robot knows where it is. The values travel on the wire.
 enum class Localisation : std::uint8_t {

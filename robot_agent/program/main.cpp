@@ -82,10 +82,7 @@ Result<RobotConfig> load(const Options& options) {
                  "a robot's name is 1 to 32 of [A-Za-z0-9_-] and not all, not '" + config->name + "'"};
   if (!options.pose.empty()) config->start = {options.pose[0], options.pose[1], options.pose[2]};
   if (options.pose.size() > 3) config->start_height = options.pose[3];
-  if (!options.perception.empty())
-    config->perception = options.perception == "slam"       ? PerceptionLevel::slam
-                         : options.perception == "odometry" ? PerceptionLevel::odometry
-                                                            : PerceptionLevel::off;
+  if (!options.perception.empty()) config->perception = perception_level(options.perception);
   if (options.domain >= 0) config->radio.domain = static_cast<std::uint32_t>(options.domain);
   if (options.robot_domain >= 0) config->robot_domain = static_cast<std::uint32_t>(options.robot_domain);
   if (!options.link.empty()) {
@@ -277,7 +274,7 @@ int main(int argc, char** argv) {
       ->expected(3, 4)
       ->check(config::between(-1e4, 1e4));
   app.add_option("--perception", options.perception, "off, odometry or slam, instead of the file's")
-      ->check(CLI::IsMember({"off", "odometry", "slam"}));
+      ->check(CLI::IsMember(kPerceptionWords));
   app.add_option("--domain", options.domain, "DDS domain of the radio")->check(config::between(0, 232));
   app.add_option("--robot-domain", options.robot_domain, "DDS domain of the driver")
       ->check(config::between(0, 232));

@@ -135,7 +135,7 @@ void read_robot_keys(const config::Node& node, const std::string& file, RobotCon
       node.child("cmd_vel").fail(Reason::out_of_range, "expected twist or twist_stamped");
   }
   if (node.has("perception"))
-    c.perception = static_cast<PerceptionLevel>(node.choice("perception", {"off", "odometry", "slam"}));
+    c.perception = static_cast<PerceptionLevel>(node.choice("perception", kPerceptionWords));
   if (const auto map = node.child_if("map"); map.present()) c.carry_maps = map.flag("carry", false);
   if (node.has("start_height")) c.start_height = node.number("start_height", config::within(-1e5, 1e5));
   c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));

@@ -151,7 +151,7 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.world = read_world(root.child("world"), file);
   out.link = read_link(root.child_if("link"), file);
   out.lidar = root.choice("lidar", {"full", "planar"}, 0) == 0 ? LidarKind::full : LidarKind::planar;
-  out.perception = static_cast<PerceptionLevel>(root.choice("perception", {"off", "odometry", "slam"}, 0));
+  out.perception = static_cast<PerceptionLevel>(root.choice("perception", kPerceptionWords, 0));
   if (root.has("odometry")) {
     const Node odometry = root.child("odometry");
     out.noise = odometry.number("noise", config::within(0.0, 10.0), 1.0);

@@ -111,9 +111,7 @@ std::string defect_list() {
 }
 
 void set_perception(Scenario& scenario, const std::string& level) {
-  scenario.perception = level == "slam"       ? PerceptionLevel::slam
-                        : level == "odometry" ? PerceptionLevel::odometry
-                                              : PerceptionLevel::off;
+  scenario.perception = perception_level(level);
   for (RobotSpec& robot : scenario.robots) robot.settings.perception = scenario.perception;
 }
 
@@ -175,7 +173,7 @@ int main(int argc, char** argv) {
   app.add_option("--shrink-to", shrink_to, "the file it is written to (default NAME-seedN-ruleM.yaml)")
       ->needs(chaos_option);
   app.add_option("--perception", perception, "of all robots, in place of what the scenario says")
-      ->check(CLI::IsMember({"off", "odometry", "slam"}));
+      ->check(CLI::IsMember(kPerceptionWords));
   app.add_flag("--until-failure", until_failure, "begin no further seed once one has failed");
   app.add_option("--defect", defect, "break a rule on purpose, to see who finds it; one of:" + defect_list());
   try {
