@@ -236,6 +236,18 @@ std::vector<std::uint8_t> encode(const SubmapPoses& poses) {
   return compress(kPoses, out.bytes());
 }
 
+std::vector<std::uint8_t> pack(SubmapPoses& poses, std::size_t max_bytes) {
+  std::vector<std::uint8_t> bytes = encode(poses);
+  while (bytes.size() > max_bytes && poses.poses.size() > 1) {
+    // A few more attempts find how many fit.
+    const std::size_t count = poses.poses.size();
+    poses.poses.resize(std::max<std::size_t>(1, std::min(count - 1, count * max_bytes / bytes.size())));
+    bytes = encode(poses);
+  }
+  if (bytes.size() > max_bytes) return {};
+  return bytes;
+}
+
 Result<SubmapPoses> decode_poses(std::span<const std::uint8_t> bytes) {
   const auto content = unpack(kPoses, bytes);
   if (!content) return content.error();

@@ -96,4 +96,8 @@ struct PackedPiece {
 PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes,
                  const FindBase& find_base = {});
 
+/// Encodes as many of the first poses as fit into `max_bytes`, and erases the others from `poses`. Returns
+/// nothing if not even one fits.
+std::vector<std::uint8_t> pack(SubmapPoses& poses, std::size_t max_bytes);
+
 }  // namespace adit::perception

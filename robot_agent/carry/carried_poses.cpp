@@ -77,14 +77,8 @@ std::optional<transfer::Source::Content> CarriedPoses::next(std::span<const Peer
   for (auto it = from->poses.rbegin();
        it != from->poses.rend() && piece.poses.size() < perception::kMaxPiecePoses; ++it)
     if ((it->second.had_by & PeerSlots::bit(first)) == 0) piece.poses.push_back(it->second.pose);
-  std::vector<std::uint8_t> bytes = perception::encode(piece);
-  while (bytes.size() > max_bytes && piece.poses.size() > 1) {
-    // A few more attempts find how many fit.
-    const std::size_t count = piece.poses.size();
-    piece.poses.resize(std::max<std::size_t>(1, std::min(count - 1, count * max_bytes / bytes.size())));
-    bytes = perception::encode(piece);
-  }
-  if (bytes.size() > max_bytes) return std::nullopt;
+  std::vector<std::uint8_t> bytes = perception::pack(piece, max_bytes);
+  if (bytes.empty()) return std::nullopt;
   Flight& flight = flights_[++tokens_];
   for (const perception::SubmapPose& pose : piece.poses) {
     flight.emplace_back(pose.key, pose.revision);

@@ -2,11 +2,6 @@
 #include "robot_agent/perception/pose_source.hpp"
 
 namespace adit::agent {
-namespace {
-
-constexpr std::size_t kPosesInPiece = 40;
-
-}  // namespace
 
 void PoseSource::open(std::uint32_t submap, std::uint64_t start, std::uint32_t index,
                       std::uint32_t revision) {
@@ -63,20 +58,15 @@ std::optional<transfer::Source::Content> PoseSource::next(std::span<const transf
   if (first == peers_.end() || first->second.empty()) return std::nullopt;
   perception::SubmapPoses piece;
   std::vector<Part> parts;
-  for (auto it = first->second.rbegin(); it != first->second.rend() && parts.size() < kPosesInPiece; ++it) {
+  for (auto it = first->second.rbegin();
+       it != first->second.rend() && parts.size() < perception::kMaxPiecePoses; ++it) {
     const Entry& entry = poses_.at(*it);
     piece.poses.push_back(content(*it, entry));
     parts.push_back({*it, entry.revision});
   }
-  std::vector<std::uint8_t> bytes = perception::encode(piece);
-  while (bytes.size() > max_bytes && parts.size() > 1) {
-    // A few more attempts find how many fit.
-    const std::size_t fit = std::min(parts.size() - 1, parts.size() * max_bytes / bytes.size());
-    parts.resize(std::max<std::size_t>(fit, 1));
-    piece.poses.resize(parts.size());
-    bytes = perception::encode(piece);
-  }
-  if (bytes.size() > max_bytes) return std::nullopt;
+  std::vector<std::uint8_t> bytes = perception::pack(piece, max_bytes);
+  if (bytes.empty()) return std::nullopt;
+  parts.resize(piece.poses.size());
   for (const Part& part : parts)
     for (const transfer::PeerId& id : peers)
       if (const auto peer = peers_.find(id); peer != peers_.end()) peer->second.erase(part.submap);
