@@ -3,18 +3,13 @@
 
 #include <algorithm>
 
+#include "core/command/words.hpp"
 #include "core/store/preserve.hpp"
 
 namespace adit::agent {
 namespace {
 
 constexpr store::StateFormat kIdentityFormat{{'I', 'D', 'E', 'N'}, 1, 16};
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
 
 std::optional<ReadSnapshot> read_any(const store::State& state) {
   switch (state.found) {
@@ -36,9 +31,9 @@ std::optional<ReadSnapshot> read_any(const store::State& state) {
 Restored usable(ReadSnapshot read) {
   Restored r{};
   r.hold = !read.safe();
-  if (!read.lost.empty()) r.text = "lost: " + joined(read.lost);
+  if (!read.lost.empty()) r.text = "lost: " + command::joined(read.lost, "");
   if (!read.unknown.empty())
-    r.text += (r.text.empty() ? "" : "; ") + ("of a newer version: " + joined(read.unknown));
+    r.text += (r.text.empty() ? "" : "; ") + ("of a newer version: " + command::joined(read.unknown, ""));
   r.damaged = !r.text.empty();
   r.snapshot = std::move(read.snapshot);
   return r;
