@@ -35,8 +35,6 @@ class PointLayout {
   Result<Sweep> unpack(std::span<const std::uint8_t> data, std::uint64_t count, std::uint64_t stamp,
                        double duration) const;
 
-  bool has_times() const { return time_.has_value(); }
-
  private:
   struct Place {
     std::uint32_t offset{};

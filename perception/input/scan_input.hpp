@@ -89,8 +89,6 @@ class ScanInput {
   const TiltFilter* tilt() const { return tilt_ ? &*tilt_ : nullptr; }
   /// The samples of the IMU are in g and are scaled.
   bool imu_in_g() const { return tilt_ && tilt_->in_g(); }
-  /// The newest sample of the IMU, ns; 0: none.
-  std::uint64_t newest_imu() const { return tilt_ ? tilt_->newest() : 0; }
   /// T_base_frame: by the platform's file, then by tf_static. Error: frame_unknown.
   Result<Pose3> find(const std::string& frame) const;
 

@@ -114,10 +114,7 @@ void SubmapGrid::insert(const Eigen::Vector3f& origin, std::span<const Eigen::Ve
     const std::uint64_t key = block_key(scan.index);
     std::uint32_t position = hash_.find(key);
     if (position == hash_.kNone) {
-      if (hash_.size() >= kMaxBlocks) {
-        ++left_out_;
-        continue;
-      }
+      if (hash_.size() >= kMaxBlocks) continue;
       position = hash_.find_or_add(key);
     }
     Block& block = hash_[position].value;

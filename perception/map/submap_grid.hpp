@@ -76,8 +76,6 @@ class SubmapGrid {
   std::size_t blocks() const { return hash_.size(); }
   /// Memory, bytes.
   std::size_t bytes() const;
-  /// Updates of blocks that were left out because there are kMaxBlocks.
-  std::uint64_t blocks_left_out() const { return left_out_; }
 
  private:
   struct Block {
@@ -112,7 +110,6 @@ class SubmapGrid {
 
   double resolution_;
   std::uint32_t revision_{0};
-  std::uint64_t left_out_{0};
   BlockHash<Block> hash_{};
   Pool pool_{};
 };

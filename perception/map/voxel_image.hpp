@@ -76,8 +76,6 @@ class VoxelImage {
 
   /// Memory, bytes.
   std::size_t bytes() const { return sizeof *this + hash_.bytes(); }
-  /// Votes that were left out, because there are kMaxBlocks or the place is out of reach.
-  std::uint64_t votes_left_out() const { return left_out_; }
 
  private:
   /// The last three votes, two bits each, the newest lowest; kVoted is set while the current submap votes.
@@ -96,7 +94,7 @@ class VoxelImage {
   static bool in_reach(const Eigen::Vector3d& low, const Eigen::Vector3d& high, double resolution);
 
   double resolution_;
-  std::uint64_t left_out_{0};
+  std::uint64_t left_out_{0};  ///< Votes, because there are kMaxBlocks or the place is out of reach.
   BlockHash<Votes> hash_{};
   std::vector<std::uint32_t> voted_{};  ///< Blocks in which the current submap voted, with repetitions.
 };

@@ -64,7 +64,6 @@ class LidarOdometry {
   const OdometryState& state() const { return state_; }
   /// The wheels' frame began again elsewhere.
   void forget_wheels() { filter_.forget_wheels(); }
-  std::size_t map_bytes() const { return map_.bytes(); }
 
  private:
   bool start(std::uint64_t stamp);
