@@ -84,7 +84,8 @@ class Agent {
   Agent(const Agent&) = delete;
   Agent& operator=(const Agent&) = delete;
 
-  /// Errors: bad_argument (name, platform), those of the participants.
+  /// Errors: bad_argument (name, platform), those of the participants, and those of the disk if `start` is to
+  /// replace a stored place and cannot be stored.
   Result<void> start();
 
   /// Executes a line of the robot's own console: "status", "unlock", "peers", "health", "restart COMPONENT",

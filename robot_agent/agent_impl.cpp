@@ -139,7 +139,11 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   e.wire = &radio;
 
   e.restored = restore_state(params.disk);
-  if (params.start_given) e.restored.place_at(params.start, params.start_height);
+  if (params.start_given)
+    if (const auto stored = e.restored.place_at(params.start, params.start_height, params.disk); !stored)
+      return Error{stored.reason(),
+                   "the start's pose cannot replace the stored place: " + stored.error().text +
+                       "; repair that, or start with another folder (--state)"};
   if (params.disk && !params.disk->instant()) disk_strand = runtime.strand("disk");
   e.keeper = std::make_unique<StateKeeper>(KeeperParams{}, params.disk, strand, disk_strand,
                                            e.restored.generation, keeper_outputs());

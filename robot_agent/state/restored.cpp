@@ -41,14 +41,16 @@ Restored usable(ReadSnapshot read) {
 
 }  // namespace
 
-void Restored::place_at(const Pose2& T_map_odom, double height) {
-  if (!snapshot || !snapshot->place) return;
+Result<void> Restored::place_at(const Pose2& T_map_odom, double height,
+                                const std::shared_ptr<store::Disk>& disk) {
+  if (!snapshot || !snapshot->place) return {};
   const StoredFrames& stored = *snapshot->place;
   snapshot->place = StoredFrames{.T_map_odom = T_map_odom,
                                  .odom_epoch = stored.odom_epoch + 1,
                                  .height = height,
                                  .map_epoch = stored.map_epoch};
   placed = true;
+  return store::StateFile(disk, kStateFile, kSnapshotFormat).save(++generation, encode(*snapshot));
 }
 
 Restored restore_state(const std::shared_ptr<store::Disk>& disk) {

@@ -26,8 +26,12 @@ struct Restored {
   bool placed{};  ///< The stored place was replaced by place_at().
 
   /// Replaces the stored place by that of an odometry frame that nothing is known of yet: no mode resumes in
-  /// it. `T_map_odom`, `height`: the pose of the frame's origin in the map, m and rad.
-  void place_at(const Pose2& T_map_odom, double height);
+  /// it. The state is on `disk` when this returns, so that no later start uses the former place. Does nothing
+  /// if no place is stored. Errors: those of the disk, which then has the former state.
+  ///
+  /// @param T_map_odom  Pose of the frame's origin in the map, m and rad.
+  /// @param height      Height of that origin, map frame, m.
+  Result<void> place_at(const Pose2& T_map_odom, double height, const std::shared_ptr<store::Disk>& disk);
 };
 
 /// Reads the state; never guesses. A file that this version cannot use is renamed, and one that it can use in

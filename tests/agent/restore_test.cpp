@@ -177,6 +177,40 @@ TEST_F(Restore, AStartThatSaysWhereTheRobotIsReplacesTheStoredPlaceAndHolds) {
   EXPECT_THAT(notice(*op1, "restarted"), HasSubstr("its start says where it is"));
 }
 
+TEST_F(Restore, AStartPoseSurvivesADeathBeforeTheFirstReport) {
+  take_lock_and_go();
+  bench->run(1s);
+  bench->params().start = {-3.0, 1.0, 0.0};
+  bench->params().start_given = true;
+  crash();
+  bench->params().start_given = false;  // As its parent restarts it.
+  bench->params().start = {};
+  crash();
+  bench->run(2s);
+  EXPECT_NEAR(op1->state.x(), bench->pose.x - 3.0, 0.01);
+  EXPECT_NEAR(op1->state.y(), bench->pose.y + 1.0, 0.01);
+  EXPECT_EQ(op1->behaviour.mode(), "hold");
+  EXPECT_THAT(bench->commands, only_zero());
+}
+
+TEST_F(Restore, AStartPoseThatCannotBeStoredIsRefused) {
+  take_lock_and_go();
+  bench->run(1s);
+  bench->stop_agent();
+  bench->params().start = {-3.0, 1.0, 0.0};
+  bench->params().start_given = true;
+  disk->set_full(true);
+  EXPECT_THAT([&] { bench->start_agent(); },
+              testing::ThrowsMessage<std::runtime_error>(
+                  testing::AllOf(HasSubstr("cannot replace the stored place: "), HasSubstr("--state"))));
+  disk->set_full(false);
+  bench->params().start_given = false;
+  crash();
+  bench->run(2s);
+  EXPECT_NEAR(op1->state.x(), bench->pose.x, 0.01) << "the former place is still stored";
+  EXPECT_EQ(op1->authority.holder(), "op1");
+}
+
 TEST_F(Restore, AManualModeFallsToHold) {
   ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
   bench->stream(*op1, 0, 300ms);
