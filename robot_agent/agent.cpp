@@ -34,8 +34,9 @@ Agent::~Agent() = default;
 
 Result<void> Agent::start() {
   if (impl_) return {Reason::in_use, "the agent runs already"};
-  if (!valid_name(params_.name))
-    return {Reason::bad_argument, "a robot's name is 1 to 32 of [A-Za-z0-9_-], not '" + params_.name + "'"};
+  if (!command::valid_robot_name(params_.name))
+    return {Reason::bad_argument,
+            "a robot's name is " + std::string(command::kRobotName) + ": '" + params_.name + "'"};
   if (const auto known = nav::make_controller(params_.platform.controller, params_.platform); !known)
     return {known.error().reason, "platform " + params_.platform.name + ": " + known.error().text};
   if (const auto known = nav::fits(params_.platform); !known)

@@ -31,7 +31,7 @@ class Decider;
 class ModeTable;
 
 struct AgentParams {
-  std::string name{"r1"};  ///< 1 to 32 characters of [A-Za-z0-9_-].
+  std::string name{"r1"};  ///< See command::valid_robot_name().
   Platform platform{};
   PerceptionLevel perception{PerceptionLevel::off};
   Id id{};                ///< Stored on the robot's disk; all zero: drawn from the seed.

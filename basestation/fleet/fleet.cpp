@@ -61,9 +61,7 @@ RobotView* Fleet::touch(const std::string& name, const wire::SampleInfo& info) {
     known->second.spoke = info.received;
     return &known->second;
   }
-  // A robot of such a name would make other commands of those that name it.
-  const bool word = name == "all" || name.starts_with('-');
-  if (!command::valid_name(name) || word || robots_.size() == kMaxRobots) {
+  if (!command::valid_robot_name(name) || robots_.size() == kMaxRobots) {
     ++ignored_;
     return nullptr;
   }

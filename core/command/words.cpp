@@ -82,6 +82,10 @@ bool valid_name(std::string_view name) {
   });
 }
 
+bool valid_robot_name(std::string_view name) {
+  return valid_name(name) && name != "all" && !name.starts_with('-');
+}
+
 std::string clean(std::string_view text, std::size_t limit) {
   std::string out(text.substr(0, limit));
   for (char& c : out)

@@ -21,6 +21,13 @@ std::string nearest(std::string_view typed, const std::vector<std::string>& cand
 /// Whether a name may be sent over the radio: 1 to 32 of [A-Za-z0-9_-].
 bool valid_name(std::string_view name);
 
+/// Whether a robot may have a name: a valid one that no command reads as another word, as `all` or
+/// `--override`.
+bool valid_robot_name(std::string_view name);
+
+/// What valid_robot_name() expects, for errors.
+inline constexpr const char* kRobotName = "1 to 32 of [A-Za-z0-9_-], not 'all' and no '-' first";
+
 /// Makes text from the radio safe for a terminal: printable ASCII, at most `limit` bytes.
 std::string clean(std::string_view text, std::size_t limit);
 

@@ -18,7 +18,7 @@ struct Sender {
   wire::ParticipantId participant{};
 };
 
-/// Names of robots and stations: 1 to 32 characters of [A-Za-z0-9_-].
+/// Names of stations, modes and areas: 1 to 32 characters of [A-Za-z0-9_-]; for robots see valid_robot_name().
 using command::valid_name;
 
 }  // namespace adit::agent

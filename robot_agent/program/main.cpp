@@ -77,9 +77,9 @@ Result<RobotConfig> load(const Options& options) {
   auto config = load_robot_config(*file);
   if (!config) return config;
   if (!options.name.empty()) config->name = config->radio.name = options.name;
-  if (!valid_name(config->name) || config->name == "all")
+  if (!command::valid_robot_name(config->name))
     return Error{Reason::bad_argument,
-                 "a robot's name is 1 to 32 of [A-Za-z0-9_-] and not all, not '" + config->name + "'"};
+                 std::string("a robot's name is ") + command::kRobotName + ": '" + config->name + "'"};
   if (!options.pose.empty()) config->start = {options.pose[0], options.pose[1], options.pose[2]};
   if (options.pose.size() > 3) config->start_height = options.pose[3];
   if (!options.perception.empty()) config->perception = perception_level(options.perception);

@@ -171,8 +171,8 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   if (!root) return root.error();
   RobotConfig c;
   c.name = root->text("name");
-  if (!c.name.empty() && !valid_name(c.name))
-    root->child("name").fail(Reason::out_of_range, "expected 1 to 32 of [A-Za-z0-9_-]");
+  if (!c.name.empty() && !command::valid_robot_name(c.name))
+    root->child("name").fail(Reason::out_of_range, std::string("expected ") + command::kRobotName);
   const std::string platform = root->text("platform");
   const std::vector<double> pose = root->numbers("pose", 3, 3, config::within(-1e6, 1e6), {0.0, 0.0, 0.0});
   c.start = {pose[0], pose[1], wrap_angle(pose[2])};

@@ -29,7 +29,7 @@ struct RobotInterfaces {
 
 /// The contents of config/robots/NAME.yaml; docs/configuration.md lists the keys.
 struct RobotConfig {
-  std::string name{};  ///< 1 to 32 characters of [A-Za-z0-9_-].
+  std::string name{};  ///< See command::valid_robot_name().
   Platform platform{};
   Pose2 start{};  ///< Map frame; m, m, rad.
   /// Height of the ground at the start, map frame, m; unset: not given.

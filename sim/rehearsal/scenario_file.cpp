@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/command/words.hpp"
 #include "core/config/node.hpp"
 #include "core/config/search.hpp"
 #include "sim/rehearsal/scenario_parts.hpp"
@@ -97,11 +98,7 @@ void read_people(const Node& root, Scenario& out) {
 
 std::string read_name(const config::Node& node, const char* key) {
   const std::string name = node.text(key);
-  const auto allowed = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
-  };
-  const bool fits = !name.empty() && name.size() <= 32 && std::all_of(name.begin(), name.end(), allowed);
-  if (node.has(key) && !fits)
+  if (node.has(key) && !command::valid_name(name))
     node.child(key).fail(Reason::bad_argument,
                          "expected 1 to 32 letters, digits, _ or - for " + std::string(key));
   return name;

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <set>
 
+#include "core/command/words.hpp"
 #include "core/config/platform_file.hpp"
 #include "core/config/search.hpp"
 #include "robot_agent/behaviour/tree_check.hpp"
@@ -69,6 +70,8 @@ RobotSpec read_spec(const Node& robot, const Scenario& scenario, Duration lock_l
   const bool has_file = robot.has("file");
   if (has_file) read_robot_file(robot, scenario, spec);
   if (!has_file || robot.has("id")) spec.id = read_name(robot, "id");
+  if (command::valid_name(spec.id) && !command::valid_robot_name(spec.id))
+    robot.child("id").fail(Reason::bad_argument, std::string("expected ") + command::kRobotName);
   if (!has_file || robot.has("platform")) read_body(robot, scenario, spec);
   if (!has_file || robot.has("pose")) {
     const std::vector<double> pose = robot.numbers("pose", 3, 3, config::within(-1e5, 1e5));

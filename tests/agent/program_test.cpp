@@ -131,6 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"unknown_key", "name: r1\nplatform: wheeled\ncolour: red\n", "r.yaml:3"},
         BadFile{"missing_name", "platform: wheeled\n", "name"},
         BadFile{"bad_name", "name: r 1\nplatform: wheeled\n", "r.yaml:1"},
+        BadFile{"name_all", "name: all\nplatform: wheeled\n", "not 'all'"},
         BadFile{"short_pose", "name: r1\nplatform: wheeled\npose: [1, 2]\n", "r.yaml:3"},
         BadFile{"unknown_platform", "name: r1\nplatform: hovercraft\n",
                 "no 'hovercraft' in config/platforms; there are: aerial, car, legged, tracked, wheeled"},

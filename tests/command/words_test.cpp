@@ -54,6 +54,13 @@ TEST(Words, NamesThatTravel) {
   EXPECT_FALSE(valid_name("r\xc3\xa9"));
 }
 
+TEST(Words, RobotNamesAreNoOtherWordsOfACommand) {
+  EXPECT_TRUE(valid_name("all") && valid_name("-r1")) << "a station may have such a name";
+  for (const char* name : {"all", "-r1", "--override", "", "r 1"})
+    EXPECT_FALSE(valid_robot_name(name)) << name;
+  for (const char* name : {"r1", "r-1", "all1"}) EXPECT_TRUE(valid_robot_name(name)) << name;
+}
+
 TEST(Words, CleanKeepsTheTerminalSafe) {
   EXPECT_EQ(clean("a\x1b[31mb\n\x7f\xff", 40), "a?[31mb???");
   EXPECT_EQ(clean("abcdef", 3), "abc");

@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(
               "r.yaml",
               "name: all\nplatform: wheeled\n",
               {"robot_agent", "--config", "FILE"},
-              {"not all"}},
+              {"r.yaml:1", "not 'all'"}},
         Wrong{"seed",
               "",
               "",

@@ -222,6 +222,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"robot_without_pose", ", pose: [1, 0, 0]", "", 6, "pose"},
         Bad{"robot_twice", "id: r2", "id: r1", 7, "taken"},
         Bad{"robot_badly_named", "id: r2", "id: 'r 2'", 7, "letters"},
+        Bad{"robot_named_all", "id: r2", "id: all", 7, "not 'all'"},
         Bad{"station_named_as_robot", "id: op1, pose: [0, 0]", "id: r1, pose: [0, 0]", 9, "taken"},
         Bad{"script_by_nobody", "by: op1, do: take r1", "by: op9, do: take r1", 13, "op9"},
         Bad{"script_unknown_robot", "do: take r1", "do: take r9", 13, "r9"},
