@@ -55,11 +55,12 @@ class OrbitMode : public ModeModule {
             .goal = {centre_->x(), centre_->y(), 0.0}};
   }
 
-  void store(KeptBehaviour& kept) const override {
-    if (centre_) kept.modes.push_back({"orbit", store::Packer{}.put(centre_->x()).put(centre_->y()).bytes()});
+  void store(StoredBehaviour& stored) const override {
+    if (centre_)
+      stored.modes.push_back({"orbit", store::Packer{}.put(centre_->x()).put(centre_->y()).bytes()});
   }
-  void restore(const KeptBehaviour& kept) override {
-    const store::Bytes* bytes = kept.of("orbit");
+  void restore(const StoredBehaviour& stored) override {
+    const store::Bytes* bytes = stored.of("orbit");
     if (!bytes) return;
     store::Unpacker in(*bytes);
     const double x = in.number(), y = in.number();

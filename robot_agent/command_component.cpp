@@ -259,8 +259,8 @@ void Agent::CommandComponent::listen_first(Time at) {
 
 void Agent::CommandComponent::keep() {
   context_.keeper->save(
-      {commands_.kept(), behaviour_.kept(), params_.boot, safeguards_.kept(), stored_place(), {}},
-      [this] { return commands_.kept_answers(); }, commands_.accepted());
+      {commands_.stored(), behaviour_.stored(), params_.boot, safeguards_.stored(), stored_place(), {}},
+      [this] { return commands_.stored_answers(); }, commands_.accepted());
 }
 
 void Agent::CommandComponent::watch_driver() {
@@ -273,7 +273,7 @@ void Agent::CommandComponent::watch_namesakes(Time at) {
   namesakes.claim({authority.holder().has_value(), authority.epoch().start}, at);
   const auto other = namesakes.tick(at);
   const bool gives_way = namesakes.verdict() == Namesakes::Verdict::gives_way;
-  if (other && namesakes_told_.pass(gives_way, at)) notices_.namesake(*other, gives_way);
+  if (other && namesakes_reported_.pass(gives_way, at)) notices_.namesake(*other, gives_way);
   if (gives_way != std::exchange(gives_way_, gives_way)) {
     context_.radio->send_claim(namesakes.announced());
     behaviour_.hold(gives_way ? Reason::name_taken : Reason::none, at);
@@ -334,7 +334,7 @@ CommandInterface::Outputs Agent::CommandComponent::command_outputs() {
             return context_.watch->set_policy(component, automatic);
           },
           [this](const Epoch& epoch) { return context_.namesakes.obeys(epoch.start); },
-          [this](const Sender& station) { context_.peers.accept_station(station, now()); }};
+          [this](const MessageSender& station) { context_.peers.accept_station(station, now()); }};
 }
 
 Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {

@@ -184,11 +184,11 @@ class Agent::CommandComponent : public Component {
   std::optional<LidarScan> waiting_scan_{};  ///< Waits for odometry as new as its stamp.
   Time started_{};
   std::optional<Time> holder_heard_{};  ///< First heartbeat of the holder since the start.
-  std::optional<Time> jump_told_{};
+  std::optional<Time> jump_reported_{};
   int comparisons_{};  ///< Scans that did not fit the stored keyframes.
   RivalWatch rivals_;
-  bool gives_way_{};                     ///< It gives way to another robot of its name.
-  RateLimit<bool> namesakes_told_{10s};  // The key is `gives_way_`.
+  bool gives_way_{};                         ///< It gives way to another robot of its name.
+  RateLimit<bool> namesakes_reported_{10s};  // The key is `gives_way_`.
   BeaconRate beacon_rate_{};
   std::uint32_t beats_{};    ///< Number of calls of beat().
   std::uint32_t beacons_{};  ///< Number of beacons sent.

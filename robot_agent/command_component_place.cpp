@@ -33,15 +33,15 @@ Result<MapFrame> Agent::CommandComponent::correct_map(const MapFrame& corrected)
 }
 
 void Agent::CommandComponent::odometry_jumped() {
-  constexpr Duration kTellAgain = 5s;  // Two drivers that write alternately cause a jump with every sample.
+  constexpr Duration kReportAgain = 5s;  // Two drivers that write alternately cause a jump with every sample.
   // Nothing says what the robot did while the agent was away.
   if (context_.place.pending()) return place_unknown("its odometry began again, too");
   navigation_.clear();
   waiting_scan_.reset();  // It was taken in the previous odometry frame.
   behaviour_.hold(Reason::odometry_jumped, now());
   keep();  // As in correct_map().
-  if (jump_told_ && now() - *jump_told_ < kTellAgain) return;
-  jump_told_ = now();
+  if (jump_reported_ && now() - *jump_reported_ < kReportAgain) return;
+  jump_reported_ = now();
   notices_.odometry_jumped(frames_.T_map_base());
 }
 

@@ -28,7 +28,7 @@ Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, M
     Mode& mode = modes_.emplace_back(Mode{row});
     if (row.moves())
       mode.module =
-          row.make({mux_.connect(std::string(row.name), row.output_lifetime), outputs_.tell_holder,
+          row.make({mux_.connect(std::string(row.name), row.output_lifetime), outputs_.notify_holder,
                     inputs_.goal_free, inputs_.height, inputs_.pose, inputs_.stopping, inputs_.convoy,
                     inputs_.right_of_way, inputs_.explore, inputs_.holder_heard, inputs_.home});
   }
@@ -44,7 +44,7 @@ Facts Behaviour::facts(Time now) const {
   Facts f = inputs_.sense(now);
   f.stopped = stopped_;
   f.stick_fresh = stick_.fresh(now);
-  f.stick_kept = stick_.kept(now);
+  f.stick_present = stick_.present(now);
   f.stick_centred = stick_.centred();
   for (const Mode& mode : modes_)
     if (mode.module) mode.module->note(f, now);
@@ -162,7 +162,7 @@ Result<void> Behaviour::enter(const ModeRow& row, Time now) {
   if (ModeModule* entered = module(row)) entered->enter(now);
   listens_ = false;
   fell_because_ = Reason::none;
-  idle_told_ = false;
+  idle_reported_ = false;
   idle_since_ = now;
   tick(now);
   return decision_.mode == &row ? Result<void>{} : refuse(decision_.reason, row.name);
@@ -265,7 +265,7 @@ void Behaviour::holder_changed(Time now) {
   if (inputs_.right_of_way) inputs_.right_of_way->holder_changed();
   stick_.forget();
   idle_since_ = now;
-  idle_told_ = false;
+  idle_reported_ = false;
   if (guard_.holder_changed()) fell_because_ = Reason::not_holder;
   tick(now);
 }
@@ -301,25 +301,25 @@ void Behaviour::hold(Reason reason, Time now) {
   tick(now);
 }
 
-KeptBehaviour Behaviour::kept() const {
-  KeptBehaviour kept{};
+StoredBehaviour Behaviour::stored() const {
+  StoredBehaviour stored{};
   const ModeRow& admitted = guard_.admitted();
-  kept.mode = admitted.name == kGetOut ? interrupted_->name : admitted.name;
-  kept.reason = fell_because_;
-  kept.areas = areas_;
+  stored.mode = admitted.name == kGetOut ? interrupted_->name : admitted.name;
+  stored.reason = fell_because_;
+  stored.areas = areas_;
   for (const Mode& mode : modes_)
-    if (mode.module) mode.module->store(kept);
-  return kept;
+    if (mode.module) mode.module->store(stored);
+  return stored;
 }
 
-void Behaviour::restore(const KeptBehaviour& kept, bool stopped, bool resume, bool listens) {
+void Behaviour::restore(const StoredBehaviour& stored, bool stopped, bool resume, bool listens) {
   for (const Mode& mode : modes_)
-    if (mode.module) mode.module->restore(kept);
-  const ModeRow* row = table().find(kept.mode);
+    if (mode.module) mode.module->restore(stored);
+  const ModeRow* row = table().find(stored.mode);
   guard_.readmit(row && resume ? *row : table().hold());
   running_ = &guard_.admitted();
-  fell_because_ = kept.reason;
-  areas_ = kept.areas;
+  fell_because_ = stored.reason;
+  areas_ = stored.areas;
   stopped_ = stopped;
   listens_ = listens;
 }
@@ -351,8 +351,8 @@ void Behaviour::tick(Time now) {
   contract::BehaviourState is = view();
   // The numbers of an exploration change with every scan; they are sent once a second.
   is.exploration = {.phase = is.exploration.phase, .reason = is.exploration.reason};
-  if (is != told_) {
-    told_ = is;
+  if (is != reported_) {
+    reported_ = is;
     outputs_.changed();
   }
 }
@@ -365,17 +365,17 @@ void Behaviour::fall(const ModeRow& from, Reason reason) {
   // The last sample was centred: the stick was released, and the robot did not move.
   if (stale && stick_.centred()) {
     fell_because_ = Reason::none;
-    return outputs_.tell_holder({{}, Severity::info, "mode_changed", reason, text});
+    return outputs_.notify_holder({{}, Severity::info, "mode_changed", reason, text});
   }
-  outputs_.tell_holder({{}, Severity::warning, stale ? "joystick_lost" : "mode_changed", reason, text});
+  outputs_.notify_holder({{}, Severity::warning, stale ? "joystick_lost" : "mode_changed", reason, text});
 }
 
 void Behaviour::watch(Time now) {
   const bool waits = decision_.mode == &table().hold() || progress().state == GoalState::reached;
   if (!waits) idle_since_ = now;
-  if (!waits || idle_told_ || now - idle_since_ < params_.idle_after) return;
-  idle_told_ = true;
-  outputs_.tell_holder(
+  if (!waits || idle_reported_ || now - idle_since_ < params_.idle_after) return;
+  idle_reported_ = true;
+  outputs_.notify_holder(
       {{}, Severity::info, "idle", Reason::none, "idle in " + std::string(decision_.mode->name)});
 }
 

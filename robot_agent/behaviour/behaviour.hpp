@@ -46,7 +46,7 @@ class Behaviour : public Requests {
   };
   struct Outputs {
     /// A notice for the holder; its operator_name is left empty.
-    std::function<void(const Notice&)> tell_holder{};
+    std::function<void(const Notice&)> notify_holder{};
     std::function<void()> changed{};
   };
 
@@ -88,11 +88,11 @@ class Behaviour : public Requests {
   /// Falls to hold on the robot's own initiative; the goal stays stored.
   void hold(Reason reason, Time now);
   /// The state that must survive a restart of the agent.
-  KeptBehaviour kept() const;
+  StoredBehaviour stored() const;
   /// Restores the state after a restart. `resume`: an autonomous mode is requested again and waits until its
   /// conditions hold; otherwise, and always after a manual mode, the robot is in hold with its goal stored.
   /// `listens`: the robot does not move until go_on() or the next request. Takes effect with the next tick.
-  void restore(const KeptBehaviour& kept, bool stopped, bool resume, bool listens = false);
+  void restore(const StoredBehaviour& stored, bool stopped, bool resume, bool listens = false);
   bool listens() const { return listens_; }
   void go_on(Time now);
 
@@ -146,9 +146,9 @@ class Behaviour : public Requests {
   bool listens_{};
   Stick stick_{};
   nav::AreaSet areas_{};
-  contract::BehaviourState told_{};  ///< The view when changed() was called last.
+  contract::BehaviourState reported_{};  ///< The view when changed() was called last.
   Time idle_since_{};
-  bool idle_told_{}, begun_{};
+  bool idle_reported_{}, begun_{};
   std::uint64_t holder_requests_{};
 };
 

@@ -15,7 +15,7 @@ struct Facts {
   bool localised{};      ///< The start pose is known, and odometry was received.
   bool terrain_fresh{};  ///< Lidar points arrived within the last 0.5 s.
   bool stick_fresh{};    ///< A stick sample arrived within the last 0.3 s.
-  bool stick_kept{};     ///< A stick sample arrived within the last 1 s: the manual mode may continue.
+  bool stick_present{};  ///< A stick sample arrived within the last 1 s: the manual mode may continue.
   bool stick_centred{};  ///< The last stick sample requests zero velocity.
   bool goal_known{};
   bool goal_free{};      ///< No known obstacle covers the goal.

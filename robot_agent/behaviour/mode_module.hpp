@@ -35,7 +35,7 @@ struct ModeProgress {
 /// The context passed to a mode's module on construction.
 struct ModeContext {
   Mux::Output output{};  ///< To the mux: passes while the mode is admitted and the tree runs it.
-  std::function<void(const Notice&)> tell_holder{};
+  std::function<void(const Notice&)> notify_holder{};
   /// Whether no known obstacle covers a place (map frame, m).
   std::function<bool(const Eigen::Vector2d&)> goal_free{};
   /// Height of a goal without z, m; empty: the goal is on the floor.
@@ -101,9 +101,9 @@ class ModeModule {
   virtual ModeProgress progress(bool /*passes*/) const { return {}; }
 
   /// Writes the state that must survive a restart; equal states write equal bytes.
-  virtual void store(KeptBehaviour&) const {}
+  virtual void store(StoredBehaviour&) const {}
   /// Restores the stored state after a restart, before the first tick.
-  virtual void restore(const KeptBehaviour&) {}
+  virtual void restore(const StoredBehaviour&) {}
 };
 
 }  // namespace adit::agent

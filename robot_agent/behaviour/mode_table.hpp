@@ -39,7 +39,7 @@ struct Condition {
 /// The conditions of the shipped modes, for rows of further ones.
 namespace conditions {
 extern const Condition kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kMapFresh, kStickFresh,
-    kStickCentred, kStickKept, kGoalKnown, kGoalFree, kProgramFresh;
+    kStickCentred, kStickPresent, kGoalKnown, kGoalFree, kProgramFresh;
 }
 
 /// The party that requests a mode.

@@ -9,7 +9,7 @@ namespace adit::agent {
 class Stick {
  public:
   static constexpr Duration kFresh = 300ms;  ///< For an older sample, zero is sent.
-  static constexpr Duration kKept = 1s;      ///< Without a newer sample, manual modes fall to hold.
+  static constexpr Duration kPresent = 1s;   ///< Without a newer sample, manual modes fall to hold.
 
   void update(const Twist2& value, Time now) {
     value_ = value;
@@ -18,7 +18,7 @@ class Stick {
   }
   void forget() { known_ = false; }
   bool fresh(Time now) const { return known_ && now - at_ < kFresh; }
-  bool kept(Time now) const { return known_ && now - at_ < kKept; }
+  bool present(Time now) const { return known_ && now - at_ < kPresent; }
   bool centred() const { return known_ && value_.zero(); }
 
  private:

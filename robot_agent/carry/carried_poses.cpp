@@ -93,7 +93,7 @@ void CarriedPoses::lost(const PeerId& peer, std::uint64_t token) {
   const auto flight = flights_.find(token);
   if (!slot || flight == flights_.end()) return;
   for (const auto& [key, revision] : flight->second) {
-    Entry& entry = robots_.at(key.robot).poses.at(key);
+    CarriedPose& entry = robots_.at(key.robot).poses.at(key);
     if (entry.pose.revision == revision) entry.had_by &= static_cast<std::uint16_t>(~PeerSlots::bit(*slot));
   }
 }

@@ -26,12 +26,12 @@ class CarriedPoses final : public transfer::Source {
   void settled(std::uint64_t token) override { flights_.erase(token); }
 
  private:
-  struct Entry {
+  struct CarriedPose {
     perception::SubmapPose pose{};
     std::uint16_t had_by{};  ///< As CarriedBlocks::Block.
   };
   struct Robot {
-    std::map<perception::SubmapKey, Entry> poses{};
+    std::map<perception::SubmapKey, CarriedPose> poses{};
     std::uint32_t sum{};
     std::size_t missing(std::size_t slot) const;
   };

@@ -15,7 +15,7 @@ const Answer* AnswerMemory::find(const wire::ParticipantId& from, std::uint64_t 
 bool AnswerMemory::too_old(const wire::ParticipantId& from, std::uint64_t seq, Line line) const {
   const auto entry = entries_.find(from);
   if (entry == entries_.end()) return false;
-  const Entry& e = entry->second;
+  const ParticipantAnswers& e = entry->second;
   const bool overtaken = line != Line::none && seq < e.newest_of[static_cast<std::size_t>(line)];
   return (e.newest >= kAnswers && seq <= e.newest - kAnswers) || overtaken || seq < e.floor;
 }
@@ -27,7 +27,7 @@ void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answe
       return a.second.used < b.second.used;
     }));
   if (durable && answer.reason == Reason::none) ++accepted_;
-  Entry& entry = entries_[from];
+  ParticipantAnswers& entry = entries_[from];
   if (entry.answers.empty()) entry.answers.resize(kAnswers);
   entry.used = now;
   // A number older than the one in its slot was refused as stale; the newer answer stays.
@@ -38,42 +38,42 @@ void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answe
   newest = std::max(newest, answer.seq);
 }
 
-std::vector<KeptAnswers> AnswerMemory::kept() const {
-  std::vector<std::pair<Time, KeptAnswers>> all;
+std::vector<StoredAnswers> AnswerMemory::stored() const {
+  std::vector<std::pair<Time, StoredAnswers>> all;
   for (const auto& [participant, entry] : entries_) {
-    KeptAnswers k{participant, {}, {}, entry.newest, entry.newest_of, entry.floor, {}};
+    StoredAnswers k{participant, {}, {}, entry.newest, entry.newest_of, entry.floor, {}};
     std::vector<const Answer*> answers;
     for (const Answer& a : entry.answers)
       if (a.seq != 0) answers.push_back(&a);
     std::sort(answers.begin(), answers.end(),
               [](const Answer* a, const Answer* b) { return a->seq < b->seq; });
     if (answers.empty()) continue;
-    if (answers.size() > KeptAnswers::kAnswers) {
-      answers.erase(answers.begin(), answers.end() - KeptAnswers::kAnswers);
+    if (answers.size() > StoredAnswers::kAnswers) {
+      answers.erase(answers.begin(), answers.end() - StoredAnswers::kAnswers);
       k.floor = std::max(k.floor, answers.front()->seq);
     }
     k.station = answers.back()->station;
     k.station_id = answers.back()->station_id;
     for (const Answer* a : answers)
-      k.answers.push_back({a->seq, a->reason, a->text.substr(0, KeptAnswer::kText)});
+      k.answers.push_back({a->seq, a->reason, a->text.substr(0, StoredAnswer::kText)});
     all.emplace_back(entry.used, std::move(k));
   }
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<KeptAnswers> kept;
+  std::vector<StoredAnswers> stored;
   for (auto& [used, answers] : all)
-    if (kept.size() < KeptAnswers::kParticipants) kept.push_back(std::move(answers));
-  return kept;
+    if (stored.size() < StoredAnswers::kParticipants) stored.push_back(std::move(answers));
+  return stored;
 }
 
-void AnswerMemory::restore(const std::vector<KeptAnswers>& kept, Time now) {
-  for (const KeptAnswers& k : kept) {
-    Entry& entry = entries_[k.participant];
+void AnswerMemory::restore(const std::vector<StoredAnswers>& stored, Time now) {
+  for (const StoredAnswers& k : stored) {
+    ParticipantAnswers& entry = entries_[k.participant];
     entry.answers.resize(kAnswers);
     entry.newest = k.newest;
     entry.newest_of = k.newest_of;
     entry.floor = k.floor;
     entry.used = now;
-    for (const KeptAnswer& a : k.answers)
+    for (const StoredAnswer& a : k.answers)
       entry.answers[a.seq % kAnswers] = {
           .station = k.station, .station_id = k.station_id, .seq = a.seq, .reason = a.reason, .text = a.text};
   }

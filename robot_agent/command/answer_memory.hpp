@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/time/time.hpp"
-#include "robot_agent/command/kept.hpp"
+#include "robot_agent/command/stored_authority.hpp"
 #include "robot_agent/command/types.hpp"
 
 namespace adit::agent {
@@ -31,18 +31,18 @@ class AnswerMemory {
   std::uint64_t accepted() const { return accepted_; }
 
   /// The answers that must survive a restart: the newest ones of the participants heard last.
-  std::vector<KeptAnswers> kept() const;
-  void restore(const std::vector<KeptAnswers>& kept, Time now);
+  std::vector<StoredAnswers> stored() const;
+  void restore(const std::vector<StoredAnswers>& stored, Time now);
 
  private:
-  struct Entry {
+  struct ParticipantAnswers {
     std::vector<Answer> answers{};  ///< Index seq % kAnswers; seq 0: empty.
     std::uint64_t newest{};
     std::array<std::uint64_t, 3> newest_of{};  ///< Indexed by Line.
     std::uint64_t floor{};                     ///< Lower numbers may have been answered before a restart.
     Time used{};
   };
-  std::map<wire::ParticipantId, Entry> entries_{};
+  std::map<wire::ParticipantId, ParticipantAnswers> entries_{};
   std::uint64_t accepted_{};
 };
 

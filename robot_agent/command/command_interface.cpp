@@ -55,10 +55,10 @@ CommandInterface::CommandInterface(CommandParams params, Requests& requests, Out
       outputs_(std::move(outputs)),
       authority_(params_.epoch_start, params_.lock_lease) {}
 
-KeptAuthority CommandInterface::kept() const {
-  KeptAuthority kept{authority_.epoch(), authority_.holder(), {}, authority_.locked(), stops_.all()};
-  if (const Station* station = holders_station()) kept.speaker = station->binding.kept();
-  return kept;
+StoredAuthority CommandInterface::stored() const {
+  StoredAuthority stored{authority_.epoch(), authority_.holder(), {}, authority_.locked(), stops_.all()};
+  if (const Station* station = holders_station()) stored.speaker = station->binding.stored();
+  return stored;
 }
 
 const Station* CommandInterface::holders_station() const {
@@ -67,14 +67,16 @@ const Station* CommandInterface::holders_station() const {
   return known && known->id == holder->id ? known : nullptr;
 }
 
-void CommandInterface::restore(const KeptAuthority& kept, const std::vector<KeptAnswers>& answers, Time now) {
-  authority_.restore(kept.holder, kept.locked, kept.epoch.counter, now);
-  if (kept.holder && kept.speaker) stations_.restore(kept.holder->name, kept.holder->id, *kept.speaker, now);
-  for (const Party& stopper : kept.stops) stops_.set(stopper);
+void CommandInterface::restore(const StoredAuthority& stored, const std::vector<StoredAnswers>& answers,
+                               Time now) {
+  authority_.restore(stored.holder, stored.locked, stored.epoch.counter, now);
+  if (stored.holder && stored.speaker)
+    stations_.restore(stored.holder->name, stored.holder->id, *stored.speaker, now);
+  for (const Party& stopper : stored.stops) stops_.set(stopper);
   memory_.restore(answers, now);
 }
 
-void CommandInterface::hear(const Sender& from, std::uint16_t protocol, Time now) {
+void CommandInterface::hear(const MessageSender& from, std::uint16_t protocol, Time now) {
   if (!valid_name(from.name)) return;
   if (identify(from, StationTable::Sign::presence, now).reason == Reason::none)
     stations_.announce(from.name, protocol);
@@ -125,7 +127,8 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
   return perform(c, now);
 }
 
-CommandInterface::Outcome CommandInterface::identify(const Sender& from, StationTable::Sign sign, Time now) {
+CommandInterface::Outcome CommandInterface::identify(const MessageSender& from, StationTable::Sign sign,
+                                                     Time now) {
   const bool holds = authority_.held_by(from.name, from.id);
   const auto verdict = stations_.hear(from, sign, authority_.holder(), now);
   if (verdict.rejected) report_intruder(from.name, *verdict.rejected, now);
@@ -285,9 +288,9 @@ CommandInterface::Outcome CommandInterface::reset(const Command& c, Time now) {
   if (others) {
     for (const Party& stopper : stops_.all()) {
       if (stopper == own) continue;
-      const std::string told = c.from.name + " reset the stop of " + stopper.name + " on " + params_.robot;
-      notify(stopper.name, Severity::warning, "reset", Reason::none, told);
-      notify(c.from.name, Severity::info, "reset", Reason::none, told);
+      const std::string notice = c.from.name + " reset the stop of " + stopper.name + " on " + params_.robot;
+      notify(stopper.name, Severity::warning, "reset", Reason::none, notice);
+      notify(c.from.name, Severity::info, "reset", Reason::none, notice);
     }
     stops_.clear_all();
   } else {
@@ -369,7 +372,7 @@ Answer CommandInterface::answer(const Command& c, const Outcome& outcome) const 
           .epoch = authority_.epoch()};
 }
 
-bool CommandInterface::may_be_back(const Sender& from) const {
+bool CommandInterface::may_be_back(const MessageSender& from) const {
   const Station* known = stations_.find(from.name);
   return known && known->id == from.id && known->binding.claimed_by(from.participant);
 }

@@ -39,13 +39,13 @@ class CommandInterface {
     /// always.
     std::function<bool(const Epoch& epoch)> is_meant{};
     /// Reports a genuine heartbeat of a station.
-    std::function<void(const Sender& station)> accepted{};
+    std::function<void(const MessageSender& station)> accepted{};
   };
 
   CommandInterface(CommandParams params, Requests& requests, Outputs outputs);
 
   /// Processes a station's heartbeat; `protocol` is the version that it announced.
-  void hear(const Sender& from, std::uint16_t protocol, Time now);
+  void hear(const MessageSender& from, std::uint16_t protocol, Time now);
   /// Records that a participant left, or that its lease expired.
   void departed(const wire::ParticipantId& participant) { stations_.leave(participant); }
   /// Executes or refuses a command, and returns the answer.
@@ -64,13 +64,13 @@ class CommandInterface {
   bool unlock_at_console();
 
   /// The state that must survive a restart of the agent.
-  KeptAuthority kept() const;
-  std::vector<KeptAnswers> kept_answers() const { return memory_.kept(); }
+  StoredAuthority stored() const;
+  std::vector<StoredAnswers> stored_answers() const { return memory_.stored(); }
   /// Number of commands accepted since the start of this agent whose answers must survive a restart.
   std::uint64_t accepted() const { return memory_.accepted(); }
   /// Restores holder, lock and stops under a new epoch, before any message is processed. Sends no
   /// notification.
-  void restore(const KeptAuthority& kept, const std::vector<KeptAnswers>& answers, Time now);
+  void restore(const StoredAuthority& stored, const std::vector<StoredAnswers>& answers, Time now);
 
   const Authority& authority() const { return authority_; }
   const StopLatches& stops() const { return stops_; }
@@ -83,7 +83,7 @@ class CommandInterface {
   };
 
   Outcome judge(const Command& c, Time now);
-  Outcome identify(const Sender& from, StationTable::Sign sign, Time now);
+  Outcome identify(const MessageSender& from, StationTable::Sign sign, Time now);
   Outcome check_holder(const Command& c) const;
   bool is_meant(const Epoch& epoch) const { return !outputs_.is_meant || outputs_.is_meant(epoch); }
   Outcome perform(const Command& c, Time now);
@@ -103,7 +103,7 @@ class CommandInterface {
   Answer answer(const Command& c, const Outcome& outcome) const;
   /// The holder's station; null if the robot has no holder, or the station was not heard.
   const Station* holders_station() const;
-  bool may_be_back(const Sender& from) const;
+  bool may_be_back(const MessageSender& from) const;
   void report_intruder(const std::string& name, const wire::ParticipantId& participant, Time now);
   void notify(const std::string& to, Severity severity, const char* code, Reason reason,
               std::string text) const;

@@ -5,8 +5,8 @@
 
 namespace adit::agent {
 
-StationTable::Verdict StationTable::hear(const Sender& from, Sign sign, const std::optional<Party>& holder,
-                                         Time now) {
+StationTable::Verdict StationTable::hear(const MessageSender& from, Sign sign,
+                                         const std::optional<Party>& holder, Time now) {
   const bool holds = holder == Party{from.name, from.id};
   const auto found =
       std::find_if(stations_.begin(), stations_.end(), [&](const Station& s) { return s.name == from.name; });
@@ -27,7 +27,7 @@ StationTable::Verdict StationTable::hear(const Sender& from, Sign sign, const st
           verdict.rejected};
 }
 
-Station* StationTable::add(const Sender& from, const std::optional<Party>& holder, Time now) {
+Station* StationTable::add(const MessageSender& from, const std::optional<Party>& holder, Time now) {
   if (stations_.size() >= kCapacity) {
     const auto rank = [&](const Station& s) {
       return std::pair(holder == Party{s.name, s.id}, s.binding.last_seen());
@@ -42,7 +42,7 @@ Station* StationTable::add(const Sender& from, const std::optional<Party>& holde
   return &stations_.back();
 }
 
-void StationTable::restore(const std::string& name, const Id& id, const Binding::Kept& speaker, Time now) {
+void StationTable::restore(const std::string& name, const Id& id, const Binding::Stored& speaker, Time now) {
   Station station{name, id, Binding(speaker, now)};
   station.holds = true;
   stations_.push_back(std::move(station));

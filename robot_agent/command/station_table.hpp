@@ -41,9 +41,9 @@ class StationTable {
   };
 
   /// Judges a heartbeat and records it if it is genuine. `holder`: the robot's holder.
-  Verdict hear(const Sender& from, Sign sign, const std::optional<Party>& holder, Time now);
+  Verdict hear(const MessageSender& from, Sign sign, const std::optional<Party>& holder, Time now);
   /// Restores the holder's name, id and bound participant after a restart, before any message is processed.
-  void restore(const std::string& name, const Id& id, const Binding::Kept& speaker, Time now);
+  void restore(const std::string& name, const Id& id, const Binding::Stored& speaker, Time now);
   void announce(const std::string& name, std::uint16_t protocol);
   /// Records that a participant left, or that its lease expired.
   void leave(const wire::ParticipantId& participant);
@@ -54,7 +54,7 @@ class StationTable {
   std::size_t size() const { return stations_.size(); }
 
  private:
-  Station* add(const Sender& from, const std::optional<Party>& holder, Time now);
+  Station* add(const MessageSender& from, const std::optional<Party>& holder, Time now);
 
   std::vector<Station> stations_{};
 };

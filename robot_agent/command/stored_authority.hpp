@@ -13,17 +13,17 @@
 namespace adit::agent {
 
 /// A stored answer, with all that is needed to repeat it.
-struct KeptAnswer {
+struct StoredAnswer {
   static constexpr std::size_t kText = 64;
 
   std::uint64_t seq{};
   Reason reason{Reason::none};
   std::string text{};  ///< At most kText bytes
-  bool operator==(const KeptAnswer&) const = default;
+  bool operator==(const StoredAnswer&) const = default;
 };
 
 /// The last answers to one participant, those with the highest numbers.
-struct KeptAnswers {
+struct StoredAnswers {
   static constexpr std::size_t kParticipants = 8;  ///< Participants whose answers are stored
   static constexpr std::size_t kAnswers = 8;       ///< Answers stored for each
 
@@ -34,18 +34,18 @@ struct KeptAnswers {
   /// Highest number of each line of commands that must stay in order.
   std::array<std::uint64_t, 3> newest_of{};
   std::uint64_t floor{};  ///< Lower numbers that are not among the answers are too old.
-  std::vector<KeptAnswer> answers{};
-  bool operator==(const KeptAnswers&) const = default;
+  std::vector<StoredAnswer> answers{};
+  bool operator==(const StoredAnswers&) const = default;
 };
 
 /// The state of the command interface that must survive a restart of the agent.
-struct KeptAuthority {
+struct StoredAuthority {
   Epoch epoch{};  ///< The counter continues; the start is drawn again.
   std::optional<Party> holder{};
-  std::optional<Binding::Kept> speaker{};  ///< Participant that is bound to the holder's name.
+  std::optional<Binding::Stored> speaker{};  ///< Participant that is bound to the holder's name.
   bool locked{};
   std::vector<Party> stops{};
-  bool operator==(const KeptAuthority&) const = default;
+  bool operator==(const StoredAuthority&) const = default;
 };
 
 }  // namespace adit::agent

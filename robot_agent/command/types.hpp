@@ -22,7 +22,7 @@ using Answer = contract::Acknowledgement;
 
 struct Command {
   std::string robot{};
-  Sender from{};
+  MessageSender from{};
   Epoch epoch{};
   std::uint64_t seq{};
   command::Request request{command::verb("query")};

@@ -84,7 +84,7 @@ void Convoy::set_role(std::optional<Role> role) {
   target_.reset();
   target_along_.reset();
   follow_speed_ = leader_limit_ = kInfinity;
-  lost_told_ = split_told_ = false;
+  lost_reported_ = split_reported_ = false;
   aside_ = 0;
   refused_at_.reset();
   joined_.reset();
@@ -211,10 +211,10 @@ void Convoy::lead(Time now) {
   const auto verdict = governor_.step(members, role_->order.gap, period);
   if (verdict.share < 1.0) leader_limit_ = verdict.share * std::min(leader_limit_, params_.max_speed);
   leader_limit_ = std::min(leader_limit_, verdict.limit);
-  if (verdict.split && !split_told_)
-    tell(Severity::warning, "convoy_split", Reason::leader_unknown,
-         "the convoy of " + params_.robot + " is split: a robot does not come after it");
-  split_told_ = verdict.split;
+  if (verdict.split && !split_reported_)
+    notify(Severity::warning, "convoy_split", Reason::leader_unknown,
+           "the convoy of " + params_.robot + " is split: a robot does not come after it");
+  split_reported_ = verdict.split;
 }
 
 void Convoy::record(const Eigen::Vector3d& place, Time now) {
@@ -245,7 +245,7 @@ bool Convoy::locate(const Eigen::Vector3d& place) {
   };
   const auto away = [](const nav::Trail::Projection& p) { return p.offset > kOffPath && p.along >= 0.0; };
   auto nearest = on(along_ ? *along_ - kSearch : -kInfinity, along_ ? *along_ + kSearch : kInfinity);
-  // A robot that was carried, or whose map jumped, looks for itself on the whole path.
+  // A robot that was carried, or whose map jumped, looks for itself on the complete path.
   if (away(nearest)) nearest = on(-kInfinity, kInfinity);
   along_ = nearest.along;
   return !away(nearest);
@@ -263,7 +263,7 @@ std::string Convoy::hindrance(Time now) const {
   if (leader.left) return leader.name + ", the leader, left the convoy";
   const Member* ahead = predecessor();
   if (now - ahead->heard >= kPredecessorTimeout)
-    return lost_told_ ? std::string() : params_.robot + " does not hear " + ahead->name;
+    return lost_reported_ ? std::string() : params_.robot + " does not hear " + ahead->name;
   if (!ahead->part) return ahead->name + " does not say that it is in this convoy";
   if (!order_agrees()) return ahead->name + " has another order of the convoy";
   if (trail_.empty() || !ahead->part->placed) return "the path of " + leader.name + " is not known yet";
@@ -301,13 +301,13 @@ void Convoy::follow(Time now) {
   if (silence > std::max(kMinLost, 4 * ahead->period)) {
     stop = std::max(stop, end);
     follow_speed_ = std::min(most, kLostSpeed);
-    if (!std::exchange(lost_told_, true))
-      tell(Severity::warning, "convoy_lost", Reason::leader_unknown,
-           params_.robot + " does not hear " + ahead->name + ", and follows the known path to its end");
+    if (!std::exchange(lost_reported_, true))
+      notify(Severity::warning, "convoy_lost", Reason::leader_unknown,
+             params_.robot + " does not hear " + ahead->name + ", and follows the known path to its end");
     state_ = State::lost;
     return choose_target(stop, stop, true);
   }
-  lost_told_ = false;
+  lost_reported_ = false;
   const nav::Spacing spacing{.standstill = rest};
   const double speed = halts(*ahead, now) ? spacing.halting_speed(gap_, ahead->speed, most)
                                           : spacing.speed(gap_, ahead->speed, most);
@@ -426,8 +426,8 @@ std::optional<ConvoyPart> Convoy::part(std::uint32_t seq) const {
   return part;
 }
 
-void Convoy::tell(Severity severity, const char* code, Reason reason, std::string text) const {
-  inputs_.tell_holder({{}, severity, code, reason, std::move(text)});
+void Convoy::notify(Severity severity, const char* code, Reason reason, std::string text) const {
+  inputs_.notify_holder({{}, severity, code, reason, std::move(text)});
 }
 
 }  // namespace adit::agent

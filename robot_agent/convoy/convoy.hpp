@@ -40,7 +40,7 @@ struct ConvoyParams {
 ///
 /// A follower moves only while it hears its predecessor with the same convoy and order, so an order that
 /// reached only some of the robots moves none. A robot that says that it left is skipped; no message of
-/// another robot adds one or changes the order (rule 8). The place is kept through a stop and a restart, and
+/// another robot adds one or changes the order (rule 8). The place survives a stop and a restart, and
 /// ends with `peeloff`, another mode, or another holder. Runs on the command strand.
 class Convoy {
  public:
@@ -52,7 +52,7 @@ class Convoy {
     const PeerTable& peers;
     /// Position of this robot, map frame, m; nothing while localisation is not initialised.
     std::function<std::optional<Eigen::Vector3d>()> place{};
-    std::function<void(const Notice&)> tell_holder{};
+    std::function<void(const Notice&)> notify_holder{};
     /// Whether no known obstacle covers a place, map frame, m. Empty: each is free.
     std::function<bool(const Eigen::Vector2d&)> free{};
   };
@@ -141,7 +141,7 @@ class Convoy {
   /// A place of the path, or one beside it where the path leads through an obstacle.
   Eigen::Vector3d beside(const Eigen::Vector3d& place);
   std::uint32_t wanted() const;
-  void tell(Severity severity, const char* code, Reason reason, std::string text) const;
+  void notify(Severity severity, const char* code, Reason reason, std::string text) const;
 
   ConvoyParams params_;
   Inputs inputs_;
@@ -162,7 +162,7 @@ class Convoy {
   std::optional<double> refused_at_{};  ///< Its position when a place was refused, m.
   double follow_speed_{std::numeric_limits<double>::infinity()};
   double leader_limit_{std::numeric_limits<double>::infinity()};
-  bool lost_told_{}, split_told_{};
+  bool lost_reported_{}, split_reported_{};
   std::optional<Time> governed_{};
 };
 

@@ -41,20 +41,20 @@ class Binding {
 
   /// The bound participant, the previous one, which may regain the binding, and the one that was rejected.
   /// This state must survive a restart, or the first participant heard afterwards would be bound.
-  struct Kept {
+  struct Stored {
     wire::ParticipantId participant{};
     std::optional<wire::ParticipantId> previous{}, rejected{};
-    bool operator==(const Kept&) const = default;
+    bool operator==(const Stored&) const = default;
   };
 
   Binding(const wire::ParticipantId& participant, Time now) : participant_(participant), last_seen_(now) {}
   /// Restores a binding, as if its participant had been heard just now.
-  Binding(const Kept& kept, Time now)
-      : participant_(kept.participant),
+  Binding(const Stored& stored, Time now)
+      : participant_(stored.participant),
         last_seen_(now),
-        previous_(kept.previous),
+        previous_(stored.previous),
         rebound_at_(now),
-        rejected_(kept.rejected) {}
+        rejected_(stored.rejected) {}
 
   /// Whether a message of a participant that is not bound counts as a claim to the binding.
   enum class MayClaim : std::uint8_t { no, yes };
@@ -68,7 +68,7 @@ class Binding {
 
   const wire::ParticipantId& participant() const { return participant_; }
   Time last_seen() const { return last_seen_; }
-  Kept kept() const { return {participant_, previous_, rejected_}; }
+  Stored stored() const { return {participant_, previous_, rejected_}; }
   /// Whether the bound participant did not leave and was heard within the last `timeout`.
   bool alive(Time now, Duration timeout) const { return !left_ && now - last_seen_ < timeout; }
   bool claimed_by(const wire::ParticipantId& participant) const { return claimant_ == participant; }

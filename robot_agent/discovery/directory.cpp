@@ -6,18 +6,18 @@
 
 namespace adit::agent {
 
-Directory::Entry* Directory::find(const std::string& name) {
-  for (Entry& entry : entries_)
+Directory::NamedEntry* Directory::find(const std::string& name) {
+  for (NamedEntry& entry : entries_)
     if (entry.name == name) return peers_.find(name) ? &entry : nullptr;
   return nullptr;
 }
 
-void Directory::set_pending(Entry& entry, const Peer& announcement, Time now) {
+void Directory::set_pending(NamedEntry& entry, const Peer& announcement, Time now) {
   entry.pending_peer = announcement;
   entry.pending_peer->last_seen = now;
 }
 
-void Directory::bind(Entry& entry, Peer announcement, Time now) {
+void Directory::bind(NamedEntry& entry, Peer announcement, Time now) {
   const Peer* known = peers_.find(entry.name);
   if (known && known->participant != announcement.participant) entry.previous_peer = *known;
   entry.pending_peer.reset();
@@ -26,7 +26,7 @@ void Directory::bind(Entry& entry, Peer announcement, Time now) {
 
 void Directory::add(const Peer& announcement, Time now) {
   // Drops the entries of names that the table evicted.
-  std::erase_if(entries_, [&](const Entry& e) { return !peers_.find(e.name); });
+  std::erase_if(entries_, [&](const NamedEntry& e) { return !peers_.find(e.name); });
   if (const Peer* known = peers_.find(announcement.name)) {
     // The station was known only from its commands: the participant that sent them is bound to its name and
     // id.
@@ -38,7 +38,7 @@ void Directory::add(const Peer& announcement, Time now) {
 }
 
 // The name is announced with another id. It changes its owner only once the known peer is gone.
-void Directory::on_other_id(Entry& entry, const Peer& announcement, Time now) {
+void Directory::on_other_id(NamedEntry& entry, const Peer& announcement, Time now) {
   const Peer& known = *peers_.find(entry.name);
   const bool name_in_use =
       known.present || peers_.holder() == &known || entry.binding.alive(now, PeerTable::kPresenceTimeout);
@@ -47,7 +47,7 @@ void Directory::on_other_id(Entry& entry, const Peer& announcement, Time now) {
   bind(entry, announcement, now);
 }
 
-void Directory::on_announcement(Entry& entry, const Peer& announcement, Time now) {
+void Directory::on_announcement(NamedEntry& entry, const Peer& announcement, Time now) {
   const Peer& known = *peers_.find(entry.name);
   if (known.id != announcement.id) return on_other_id(entry, announcement, now);
   const auto verdict = entry.binding.on_heartbeat(announcement.participant, Binding::MayClaim::yes, now);
@@ -67,7 +67,7 @@ void Directory::on_capabilities(const Peer& announcement, Time now) {
   if (!valid_name(announcement.name)) return;
   Peer peer = announcement;
   peer.has_capabilities = true;
-  if (Entry* known = find(peer.name))
+  if (NamedEntry* known = find(peer.name))
     on_announcement(*known, peer, now);
   else
     add(peer, now);
@@ -75,7 +75,7 @@ void Directory::on_capabilities(const Peer& announcement, Time now) {
 
 void Directory::on_presence(const std::string& name, const Id& id, const wire::ParticipantId& participant,
                             Time now) {
-  Entry* known = find(name);
+  NamedEntry* known = find(name);
   if (!known) return;  // Its capabilities will follow.
   const auto is_sender = [&](const Peer& p) { return p.id == id && p.participant == participant; };
   // Copies, because on_announcement() changes the stored peers.
@@ -91,7 +91,7 @@ void Directory::on_presence(const std::string& name, const Id& id, const wire::P
 
 void Directory::on_participant(const wire::ParticipantEvent& event) {
   if (event.present) return;  // Its messages will follow.
-  for (Entry& entry : entries_) {
+  for (NamedEntry& entry : entries_) {
     entry.binding.on_leave(event.id);
     if (entry.pending_peer && entry.pending_peer->participant == event.id) entry.pending_peer.reset();
   }
@@ -100,7 +100,7 @@ void Directory::on_participant(const wire::ParticipantEvent& event) {
 
 void Directory::tick(Time now) {
   peers_.tick(now);
-  for (Entry& entry : entries_) {
+  for (NamedEntry& entry : entries_) {
     const Peer* peer = peers_.find(entry.name);
     if (!peer || !entry.pending_peer) continue;
     if (now - entry.pending_peer->last_seen >= PeerTable::kPresenceTimeout) continue;

@@ -44,7 +44,7 @@ class Directory {
   void tick(Time now);
 
  private:
-  struct Entry {
+  struct NamedEntry {
     std::string name{};
     Binding binding;
     std::optional<Peer> pending_peer{};   ///< Announced by a participant that is not bound yet.
@@ -52,16 +52,16 @@ class Directory {
   };
 
   /// The entry of a name; null if the name is not in the table, or no peer announced capabilities with it.
-  Entry* find(const std::string& name);
+  NamedEntry* find(const std::string& name);
   void add(const Peer& announcement, Time now);
-  void on_announcement(Entry& entry, const Peer& announcement, Time now);
-  void on_other_id(Entry& entry, const Peer& announcement, Time now);
+  void on_announcement(NamedEntry& entry, const Peer& announcement, Time now);
+  void on_other_id(NamedEntry& entry, const Peer& announcement, Time now);
   /// Enters the announced peer into the table, and stores the one that it replaces.
-  void bind(Entry& entry, Peer announcement, Time now);
-  static void set_pending(Entry& entry, const Peer& announcement, Time now);
+  void bind(NamedEntry& entry, Peer announcement, Time now);
+  static void set_pending(NamedEntry& entry, const Peer& announcement, Time now);
 
   PeerTable& peers_;
-  std::vector<Entry> entries_{};
+  std::vector<NamedEntry> entries_{};
 };
 
 }  // namespace adit::agent

@@ -95,7 +95,7 @@ bool PeerTable::put(Peer peer, Time now) {
   return true;
 }
 
-void PeerTable::accept_station(const Sender& from, Time now) {
+void PeerTable::accept_station(const MessageSender& from, Time now) {
   Peer peer{};
   peer.name = from.name;
   peer.id = from.id;

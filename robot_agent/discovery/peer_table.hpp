@@ -63,7 +63,7 @@ class PeerTable {
   bool put(Peer peer, Time now);
   /// Records a heartbeat of a station that the command interface accepted; the station may not have announced
   /// its capabilities yet.
-  void accept_station(const Sender& from, Time now);
+  void accept_station(const MessageSender& from, Time now);
   /// Records a heartbeat of another robot with this robot's name.
   void hear_namesake(const std::string& name, const Id& id, const wire::ParticipantId& participant, Time now);
   /// Sets the station that holds this robot; an empty name: no holder.

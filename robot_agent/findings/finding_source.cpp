@@ -81,7 +81,7 @@ bool FindingSource::make_room(std::uint8_t importance) {
   return true;
 }
 
-void FindingSource::take_from(Peer& peer, std::uint64_t id) {
+void FindingSource::take_from(FindingRecipient& peer, std::uint64_t id) {
   const auto want = peer.wants.find(id);
   if (want == peer.wants.end()) return;
   if (want->second.flights > 0) --peer.flying;
@@ -91,7 +91,7 @@ void FindingSource::take_from(Peer& peer, std::uint64_t id) {
 void FindingSource::heard(const PeerId& station, Time now) {
   const auto found = peers_.find(station);
   if (found == peers_.end()) return;
-  Peer& peer = found->second;
+  FindingRecipient& peer = found->second;
   if (peer.heard && now - *peer.heard >= kSilence) {
     for (auto& [id, want] : peer.wants) want.losses = 0, want.next = {};
     rests_until_.reset();
@@ -107,7 +107,7 @@ void FindingSource::tick(Time now) {
 }
 
 void FindingSource::join(const PeerId& station) {
-  Peer& peer = peers_[station];
+  FindingRecipient& peer = peers_[station];
   // What was on its way was for the station's process before; what is on its disk it still has.
   peer.wants.clear();
   peer.flying = 0;

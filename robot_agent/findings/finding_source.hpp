@@ -81,7 +81,7 @@ class FindingSource final : public transfer::Source {
     std::uint8_t losses{};   ///< Of it in a row.
     Time next{};             ///< Not before.
   };
-  struct Peer {
+  struct FindingRecipient {
     std::map<std::uint64_t, Want> wants{};  ///< By id.
     std::size_t flying{};                   ///< Number of those that are on their way.
     std::optional<Time> heard{};
@@ -92,7 +92,7 @@ class FindingSource final : public transfer::Source {
   };
   /// The findings that may go out now, the most important first. Sets rests_until_ if there is none.
   std::vector<Due> due(std::span<const transfer::PeerId> peers, Time now);
-  void take_from(Peer& peer, std::uint64_t id);
+  void take_from(FindingRecipient& peer, std::uint64_t id);
   bool make_room(std::uint8_t importance);
 
   FindingParams params_;
@@ -102,7 +102,7 @@ class FindingSource final : public transfer::Source {
   Random random_;
   KnownFindings known_;
   findings::FindingStore finding_store_;
-  std::map<transfer::PeerId, Peer> peers_{};
+  std::map<transfer::PeerId, FindingRecipient> peers_{};
   std::map<std::uint64_t, std::vector<std::uint64_t>> flights_{};  ///< Ids by token.
   std::uint64_t tokens_{};
   std::size_t run_{};                  ///< Pieces since the sources behind this one had a turn.

@@ -27,7 +27,7 @@ void Fence::update(const nav::AreaSet& areas, const Frames& frames) {
   if (changed) convert(areas, frames);
   const Eigen::Vector3d place = frames.T_odom_base().position;
   const Pose2 pose = frames.T_odom_base().planar();
-  kept_ = all_.permits(nav::outline(platform_, pose), place.z());
+  obeyed_ = all_.permits(nav::outline(platform_, pose), place.z());
   const auto wide = nav::outline(platform_, pose, nav::AreaSet::kMargin);
   for (Part& part : parts_) {
     const bool binds = part.binds ? part.areas.permits(place) : part.areas.permits(wide, place.z());

@@ -10,7 +10,7 @@ namespace adit::agent {
 /// A robot's areas in the odometry frame, and those of them that bind it now.
 ///
 /// An area ceases to bind when the middle of the body is on its forbidden side, as after manual driving: then
-/// the robot may drive back by any route. The area binds again as soon as the whole body, with
+/// the robot may drive back by any route. The area binds again as soon as the complete body, with
 /// AreaSet::kMargin around it, is on its permitted side. All `keep_in` areas bind together, because they are
 /// one piece of ground.
 class Fence {
@@ -24,7 +24,7 @@ class Fence {
   const nav::AreaSet& all() const { return all_; }
   const nav::AreaSet& binding() const { return binding_; }
   /// Whether no part of the body is on forbidden ground.
-  bool is_kept() const { return kept_; }
+  bool is_obeyed() const { return obeyed_; }
   /// Points along the border of the areas that bind, up to `range` metres from the body: see
   /// nav::sample_border.
   std::vector<Eigen::Vector2f> border(const Frames& frames, double range) const;
@@ -42,7 +42,7 @@ class Fence {
   std::uint32_t map_epoch_{};  ///< Of the conversion.
   nav::AreaSet all_{}, binding_{};
   std::vector<Part> parts_{};
-  bool kept_{true};
+  bool obeyed_{true};
 };
 
 }  // namespace adit::agent

@@ -85,7 +85,7 @@ void Navigation::update_fence(Time now) {
   if (areas_.empty() && fence_.empty()) return;
   fence_.update(areas_, frames_);
   monitor_.set_border(is_bound() ? fence_.border(frames_, kBorderRange) : std::vector<Eigen::Vector2f>{});
-  if (!fence_.is_kept() && !std::holds_alternative<Stand>(motion_)) warn(Warning::outside_area, now);
+  if (!fence_.is_obeyed() && !std::holds_alternative<Stand>(motion_)) warn(Warning::outside_area, now);
 }
 
 void Navigation::step(Time now) {

@@ -27,18 +27,18 @@ class PoseHistory {
 
   std::size_t size() const { return size_; }
   /// Stamp of the newest sample; 0: there is none.
-  std::uint64_t newest() const { return size_ > 0 ? entry(size_ - 1).stamp : 0; }
+  std::uint64_t newest() const { return size_ > 0 ? sample(size_ - 1).stamp : 0; }
 
  private:
-  struct Entry {
+  struct HistoryPose {
     std::uint64_t stamp{};
     Pose3 pose{};
   };
-  /// The `n`-th entry in the order of stamps.
-  const Entry& entry(std::size_t n) const { return entries_[(first_ + n) % kCapacity]; }
-  Entry& entry(std::size_t n) { return entries_[(first_ + n) % kCapacity]; }
+  /// The `n`-th sample in the order of stamps.
+  const HistoryPose& sample(std::size_t n) const { return samples_[(first_ + n) % kCapacity]; }
+  HistoryPose& sample(std::size_t n) { return samples_[(first_ + n) % kCapacity]; }
 
-  std::array<Entry, kCapacity> entries_{};
+  std::array<HistoryPose, kCapacity> samples_{};
   std::size_t first_{}, size_{};
 };
 

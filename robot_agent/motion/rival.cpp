@@ -10,7 +10,7 @@ bool RivalWatch::heard(const wire::ParticipantId& writer, Time now) {
     since_ = now;
     count_ = 0;
   }
-  return ++count_ >= kSamples && told_.pass(writer, now);
+  return ++count_ >= kSamples && reported_.pass(writer, now);
 }
 
 }  // namespace adit::agent

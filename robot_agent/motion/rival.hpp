@@ -29,7 +29,7 @@ class RivalWatch {
   wire::ParticipantId writer_{};
   int count_{};
   Time since_{};
-  RateLimit<wire::ParticipantId> told_{kAgain, 8};
+  RateLimit<wire::ParticipantId> reported_{kAgain, 8};
 };
 
 }  // namespace adit::agent

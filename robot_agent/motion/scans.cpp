@@ -148,21 +148,21 @@ void Scans::pass_on(std::size_t lidar) {
   });
   if (!scan) return refuse(scan.error());
   if (!*scan) return;  // A scan is made when the first lidar's sweep comes.
-  perception::Scan& whole = **scan;
+  perception::Scan& complete = **scan;
   // The first sweep begins before the first pose.
-  not_deskewed_ = waiting.sweep.timed && !whole.deskewed && history_.size() > 0 ? not_deskewed_ + 1 : 0;
+  not_deskewed_ = waiting.sweep.timed && !complete.deskewed && history_.size() > 0 ? not_deskewed_ + 1 : 0;
   if (not_deskewed_ >= kMaxNotDeskewed)
     notice(Severity::warning, "not_deskewed", Reason::sensor_times,
            "the odometry has no poses for the times of the scans, which are not corrected for motion; do "
            "lidar and odometry use one clock?");
-  for (const perception::ScanWarning& warning : whole.warnings)
+  for (const perception::ScanWarning& warning : complete.warnings)
     notice(Severity::warning, warning.code, warning.reason, warning.text);
   std::optional<OdometryReport> report;
-  if (located && whole.stamp != 0) report = locate(whole);
+  if (located && complete.stamp != 0) report = locate(complete);
   // The odometry knows roll and pitch better than a filter of the IMU alone.
-  const auto attitude = report && report->health != Localisation::lost ? std::nullopt : whole.attitude;
+  const auto attitude = report && report->health != Localisation::lost ? std::nullopt : complete.attitude;
   call(output_,
-       {std::make_shared<PointCloud>(std::move(whole.points)), whole.stamp, attitude, waiting.received,
+       {std::make_shared<PointCloud>(std::move(complete.points)), complete.stamp, attitude, waiting.received,
         report},
        {.deadline = kScanDeadline}, [](const Result<void>&) {});
 }

@@ -38,14 +38,14 @@ std::uint64_t z_order(const perception::BlockIndex& index) {
 /// Candidates for a piece, those first that should go first.
 struct BlockSource::Choice {
   struct Candidate {
-    Cell cell{};
+    LatticeCell cell{};
     bool late{};    ///< It cannot wait for a full piece.
     bool coarse{};  ///< In voxels of 0.4 m.
   };
   std::vector<Candidate> all{};
-  std::set<Cell> focused{};
+  std::set<LatticeCell> focused{};
 
-  void add(const Cell& cell, bool late, bool coarse = false) { all.push_back({cell, late, coarse}); }
+  void add(const LatticeCell& cell, bool late, bool coarse = false) { all.push_back({cell, late, coarse}); }
   /// Puts those from `first` to `last` into an order in which neighbours follow each other, from the one that
   /// is first now on: in a piece, neighbours take least.
   void gather(std::ptrdiff_t first, std::ptrdiff_t last) {
@@ -105,7 +105,7 @@ void BlockSource::focus(const PeerId& id, std::vector<BlockRegion> regions) {
   begin_focus(peer->second);
 }
 
-void BlockSource::begin_focus(Peer& peer) {
+void BlockSource::begin_focus(BlockRecipient& peer) {
   peer.focus_rests_until.reset();
   peer.focus_next = std::numeric_limits<std::size_t>::max();
 }
@@ -114,10 +114,10 @@ bool BlockSource::is_behind() const {
   return std::any_of(peers_.begin(), peers_.end(), [](const auto& peer) { return peer.second.behind; });
 }
 
-std::size_t BlockSource::add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Time now,
-                                   Choice& out) const {
+std::size_t BlockSource::add_slice(const BlockRecipient& peer, const BlockRegion& region, std::int32_t x,
+                                   Time now, Choice& out) const {
   std::size_t looked = 1;
-  const Cell first{region.group, {x, region.low.y, INT32_MIN}};
+  const LatticeCell first{region.group, {x, region.low.y, INT32_MIN}};
   for (auto it = cells_.lower_bound(first); it != cells_.end() && it->first.group == region.group;
        ++it, ++looked) {
     const auto& [cell, place] = *it;
@@ -131,7 +131,7 @@ std::size_t BlockSource::add_slice(const Peer& peer, const BlockRegion& region, 
   return looked;
 }
 
-void BlockSource::add_focused(Peer& peer, Time now, Choice& out) {
+void BlockSource::add_focused(BlockRecipient& peer, Time now, Choice& out) {
   if (!peer.behind || (peer.focus_rests_until && now < *peer.focus_rests_until)) return;
   std::vector<std::pair<const BlockRegion*, std::int32_t>> slices;
   for (const auto* regions : {&focus_, &peer.focus})
@@ -148,8 +148,8 @@ void BlockSource::add_focused(Peer& peer, Time now, Choice& out) {
   if (slice == slices.size() && out.all.size() == before) peer.focus_rests_until = now + kFocusRest;
 }
 
-void BlockSource::add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const {
-  std::vector<std::pair<const Cell*, const Place*>> seen;
+void BlockSource::add_unseen(const BlockRecipient& peer, Duration wait, Time now, Choice& out) const {
+  std::vector<std::pair<const LatticeCell*, const Place*>> seen;
   std::size_t looked = 0;
   for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < kLookedAt; ++it, ++looked) {
     const Place& place = cells_.at(it->second);
@@ -164,8 +164,9 @@ void BlockSource::add_unseen(const Peer& peer, Duration wait, Time now, Choice& 
   }
 }
 
-std::size_t BlockSource::add_held(const Peer& peer, const std::map<std::uint64_t, Cell>& places,
-                                  std::size_t most, Time now, Choice& out) const {
+std::size_t BlockSource::add_held(const BlockRecipient& peer,
+                                  const std::map<std::uint64_t, LatticeCell>& places, std::size_t most,
+                                  Time now, Choice& out) const {
   std::size_t looked = 0, added = 0;
   for (const auto& [change, cell] : places) {
     if (looked++ >= kLookedAt || added >= most) break;
@@ -177,17 +178,17 @@ std::size_t BlockSource::add_held(const Peer& peer, const std::map<std::uint64_t
   return added;
 }
 
-void BlockSource::add_resting(const Peer& peer, Time now, Choice& out) const {
+void BlockSource::add_resting(const BlockRecipient& peer, Time now, Choice& out) const {
   add_held(peer, peer.resting, kLookedAt, now, out);
 }
 
-void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
+void BlockSource::add_changed(BlockRecipient& peer, Time now, Choice& out) {
   if (peer.changed_rests_until && now < *peer.changed_rests_until) return;
   if (add_held(peer, peer.changed, kBlocksInPiece, now, out) == 0) peer.changed_rests_until = now + kRest;
 }
 
-bool BlockSource::is_coarse_first(Peer& peer, std::size_t max_bytes) const {
-  const bool begins = whole_bytes_ * static_cast<double>(peer.unseen.size()) >
+bool BlockSource::is_coarse_first(BlockRecipient& peer, std::size_t max_bytes) const {
+  const bool begins = complete_bytes_ * static_cast<double>(peer.unseen.size()) >
                       static_cast<double>(params_.coarse_pieces * max_bytes);
   // It ends when the peer is not behind any more, as pieces are lost.
   if (begins) peer.coarse_first = peer.behind = true;
@@ -195,7 +196,7 @@ bool BlockSource::is_coarse_first(Peer& peer, std::size_t max_bytes) const {
   return peer.coarse_first;
 }
 
-std::vector<BlockSource::Part> BlockSource::choose_coarse(Peer& peer) {
+std::vector<BlockSource::Part> BlockSource::choose_coarse(BlockRecipient& peer) {
   Choice choice;
   std::size_t looked = 0;
   for (auto it = peer.unseen.lower_bound(peer.coarse_below); it != peer.unseen.begin() && looked < kLookedAt;
@@ -213,7 +214,7 @@ std::vector<BlockSource::Part> BlockSource::choose_coarse(Peer& peer) {
   return out;
 }
 
-std::vector<BlockSource::Part> BlockSource::choose(Peer& peer, std::size_t max_bytes, Time now) {
+std::vector<BlockSource::Part> BlockSource::choose(BlockRecipient& peer, std::size_t max_bytes, Time now) {
   if (peer.rests_until && now < *peer.rests_until) return {};
   Choice choice;
   const int longer = max_bytes < kSmallPiece ? 4 : 1;

@@ -61,18 +61,18 @@ SubmapPlace BlockSource::place_of(std::uint32_t submap) const {
                                : SubmapPlace{params_.start, submap, kAlone | submap, BlockIndex{}};
 }
 
-BlockSource::Cell BlockSource::cell_of(const Ref& ref) const {
+BlockSource::LatticeCell BlockSource::cell_of(const Ref& ref) const {
   const SubmapPlace place = place_of(ref.submap);
   return {place.group,
           {ref.index.x + place.offset.x, ref.index.y + place.offset.y, ref.index.z + place.offset.z}};
 }
 
-BlockSource::Ref BlockSource::ref_in(const Cell& cell, std::uint32_t submap) const {
+BlockSource::Ref BlockSource::ref_in(const LatticeCell& cell, std::uint32_t submap) const {
   const BlockIndex offset = place_of(submap).offset;
   return {submap, {cell.index.x - offset.x, cell.index.y - offset.y, cell.index.z - offset.z}};
 }
 
-BlockVotes BlockSource::votes_of(const Cell& cell, const Place& place,
+BlockVotes BlockSource::votes_of(const LatticeCell& cell, const Place& place,
                                  std::optional<std::uint32_t> without) const {
   BlockVotes votes = place.forgotten;
   for (const std::uint32_t submap : place.submaps) {
@@ -83,7 +83,7 @@ BlockVotes BlockSource::votes_of(const Cell& cell, const Place& place,
   return votes;
 }
 
-bool BlockSource::add_missing(Peer& peer, const Cell& cell, const Place& place) {
+bool BlockSource::add_missing(BlockRecipient& peer, const LatticeCell& cell, const Place& place) {
   peer.forget(place.change);
   const std::uint64_t has = (place.up_to_date & peer.bit) != 0 ? place.sent_known : 0;
   const bool grows = (in_large_voxels(place.known) & ~in_large_voxels(has)) != 0;
@@ -99,7 +99,7 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
   if (!added && stored.known == block.known && stored.occupied == block.occupied) return;
   changes_ = std::max<std::uint64_t>(changes_ + 1, revision);
   stored = {block.known, block.occupied, changes_};
-  const Cell cell = cell_of(ref);
+  const LatticeCell cell = cell_of(ref);
   Place& place = cells_[cell];
   if (added)
     place.submaps.insert(std::upper_bound(place.submaps.begin(), place.submaps.end(), submap), submap);
@@ -124,7 +124,7 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
   if (blocks_.size() > params_.max_blocks) make_room();
 }
 
-void BlockSource::prune(const Cell& cell) {
+void BlockSource::prune(const LatticeCell& cell) {
   const auto found = cells_.find(cell);
   if (found == cells_.end()) return;
   for (std::size_t i = found->second.submaps.size(); i-- > 0;) {
@@ -135,7 +135,7 @@ void BlockSource::prune(const Cell& cell) {
   }
 }
 
-bool BlockSource::is_outvoted(const Cell& cell, const Place& place, std::size_t position) const {
+bool BlockSource::is_outvoted(const LatticeCell& cell, const Place& place, std::size_t position) const {
   std::uint64_t once = 0, twice = 0, thrice = 0;  // Voxels that so many newer submaps know.
   for (std::size_t i = position + 1; i < place.submaps.size(); ++i) {
     const std::uint64_t by = blocks_.at(ref_in(cell, place.submaps[i])).known;
@@ -157,7 +157,7 @@ std::size_t BlockSource::take_pruned(std::uint32_t submap) {
 void BlockSource::has(const PeerId& id, const std::set<std::uint32_t>& submaps) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
-  Peer& peer = found->second;
+  BlockRecipient& peer = found->second;
   for (auto& [cell, place] : cells_) {
     if (!std::all_of(place.submaps.begin(), place.submaps.end(),
                      [&](std::uint32_t submap) { return submaps.contains(submap); }))
@@ -201,7 +201,7 @@ bool BlockSource::is_covered(std::uint32_t submap) const {
   std::size_t all = 0, needed = 0;
   for (auto it = blocks_.lower_bound(first_of(submap)); it != blocks_.end() && it->first.submap == submap;
        ++it, ++all) {
-    const Cell cell = cell_of(it->first);
+    const LatticeCell cell = cell_of(it->first);
     const Place& place = cells_.at(cell);
     needed += votes_of(cell, place, submap).shows(votes_of(cell, place)) ? 0 : 1;
   }
@@ -251,7 +251,7 @@ void BlockSource::join(const PeerId& id) {
   if (peers_.size() >= kMaxPeers) return;
   std::uint16_t used = 0;
   for (const auto& [other, peer] : peers_) used |= peer.bit;
-  Peer& peer = peers_[id];
+  BlockRecipient& peer = peers_[id];
   peer.bit = 1;
   while ((used & peer.bit) != 0) peer.bit = static_cast<std::uint16_t>(peer.bit << 1);
   for (auto& [cell, place] : cells_) {
@@ -325,10 +325,10 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
 BlockSource::Bytes BlockSource::bytes_of(const std::vector<Part>& parts, std::uint16_t to) const {
   Bytes out;
   for (const Part& part : parts)
-    (part.coarse ? out.coarse : cells_.at(part.cell).has_base(to) ? out.changes : out.wholes) += 1.0;
+    (part.coarse ? out.coarse : cells_.at(part.cell).has_base(to) ? out.changes : out.complete) += 1.0;
   out.coarse *= coarse_bytes_;
   out.changes *= change_bytes_;
-  out.wholes *= whole_bytes_;
+  out.complete *= complete_bytes_;
   return out;
 }
 
@@ -339,10 +339,10 @@ void BlockSource::learn(const std::vector<Part>& sent, std::uint16_t to, std::si
   const double weight = std::min(1.0, static_cast<double>(sent.size()) / kLearnedFrom) * kLearned;
   coarse_bytes_ *= 1.0 + weight * factor * expected.coarse / all;
   change_bytes_ *= 1.0 + weight * factor * expected.changes / all;
-  whole_bytes_ *= 1.0 + weight * factor * expected.wholes / all;
+  complete_bytes_ *= 1.0 + weight * factor * expected.complete / all;
 }
 
-void BlockSource::note_coarse(const Cell& cell, Place& place, std::uint16_t to) {
+void BlockSource::note_coarse(const LatticeCell& cell, Place& place, std::uint16_t to) {
   const std::uint64_t known = in_large_voxels(place.known);
   if (known != place.coarse_known) place.coarse_by = place.coarse_missed_by = 0;
   place.coarse_known = known;
@@ -353,7 +353,7 @@ void BlockSource::note_coarse(const Cell& cell, Place& place, std::uint16_t to) 
     if ((place.up_to_date & peer.bit) == 0 || !place.is_sent()) add_missing(peer, cell, place);
 }
 
-void BlockSource::note_sent(const Cell& cell, Place& place, std::uint16_t to) {
+void BlockSource::note_sent(const LatticeCell& cell, Place& place, std::uint16_t to) {
   // A silent peer that acknowledged the same state still has it.
   const auto has = static_cast<std::uint16_t>(place.is_sent() ? place.up_to_date & place.had_by : 0);
   place.waits_since.reset();
@@ -402,7 +402,7 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
     if (part.coarse ? place.coarse_change != part.change
                     : place.sent_change != part.change || (place.had_by & bit) != 0)
       continue;
-    // Twice, it was lost for good: a station that takes none is not to be kept from the small ones.
+    // Twice, it was lost for good: a station that takes no large voxels must get the small ones.
     if (part.coarse && (place.is_fine(bit) || (place.coarse_missed_by & bit) != 0)) continue;
     place.grew_since = Time(Duration::min() / 2);  // Waits are for what arrived.
     if (part.coarse) {

@@ -128,10 +128,10 @@ class BlockSource final : public transfer::Source {
   };
   static constexpr Ref first_of(std::uint32_t submap) { return {submap, {INT32_MIN, INT32_MIN, INT32_MIN}}; }
   /// A cell of a group's lattice.
-  struct Cell {
+  struct LatticeCell {
     std::uint64_t group{};
     perception::BlockIndex index{};
-    auto operator<=>(const Cell&) const = default;
+    auto operator<=>(const LatticeCell&) const = default;
   };
   struct Block {
     std::uint64_t known{}, occupied{};
@@ -171,11 +171,11 @@ class BlockSource final : public transfer::Source {
     void forget(std::uint16_t peer);
   };
   /// What one peer lacks, by number of the change.
-  struct Peer {
+  struct BlockRecipient {
     std::uint16_t bit{};
-    std::map<std::uint64_t, Cell> unseen{};   ///< With voxels of 0.4 m of which it knows nothing.
-    std::map<std::uint64_t, Cell> resting{};  ///< That went in voxels of 0.4 m, and in no others.
-    std::map<std::uint64_t, Cell> changed{};  ///< Others.
+    std::map<std::uint64_t, LatticeCell> unseen{};   ///< With voxels of 0.4 m of which it knows nothing.
+    std::map<std::uint64_t, LatticeCell> resting{};  ///< That went in voxels of 0.4 m, and in no others.
+    std::map<std::uint64_t, LatticeCell> changed{};  ///< Others.
     std::optional<Time> rests_until{};  ///< There was not enough for a piece when it was looked at last.
     std::optional<Time> changed_rests_until{};  ///< Nothing in `changed` was due then.
     std::vector<BlockRegion> focus{};
@@ -192,28 +192,29 @@ class BlockSource final : public transfer::Source {
   };
   /// A place in a piece.
   struct Part {
-    Cell cell{};
+    LatticeCell cell{};
     bool coarse{};           ///< In voxels of 0.4 m.
     std::uint64_t change{};  ///< Of the state that was sent.
   };
   /// What the blocks of a piece are expected to take.
   struct Bytes {
     static constexpr double kHeader = 32.0;
-    double coarse{}, changes{}, wholes{};
-    double sum() const { return kHeader + coarse + changes + wholes; }
+    double coarse{}, changes{}, complete{};
+    double sum() const { return kHeader + coarse + changes + complete; }
   };
   SubmapPlace place_of(std::uint32_t submap) const;
-  Cell cell_of(const Ref& ref) const;
+  LatticeCell cell_of(const Ref& ref) const;
   /// The block of a submap in a cell.
-  Ref ref_in(const Cell& cell, std::uint32_t submap) const;
+  Ref ref_in(const LatticeCell& cell, std::uint32_t submap) const;
   /// What the merge of these submaps shows of a cell.
-  BlockVotes votes_of(const Cell& cell, const Place& place, std::optional<std::uint32_t> without = {}) const;
+  BlockVotes votes_of(const LatticeCell& cell, const Place& place,
+                      std::optional<std::uint32_t> without = {}) const;
   /// Notes that a peer lacks the present state of a place. Returns whether it lacks voxels of 0.4 m.
-  static bool add_missing(Peer& peer, const Cell& cell, const Place& place);
+  static bool add_missing(BlockRecipient& peer, const LatticeCell& cell, const Place& place);
   /// Notes that the present state of a place went to these peers.
-  void note_sent(const Cell& cell, Place& place, std::uint16_t to);
+  void note_sent(const LatticeCell& cell, Place& place, std::uint16_t to);
   /// The same in voxels of 0.4 m.
-  void note_coarse(const Cell& cell, Place& place, std::uint16_t to);
+  void note_coarse(const LatticeCell& cell, Place& place, std::uint16_t to);
   /// Takes the length of a piece into the mean lengths of blocks.
   void learn(const std::vector<Part>& sent, std::uint16_t to, std::size_t bytes);
   Bytes bytes_of(const std::vector<Part>& parts, std::uint16_t to) const;
@@ -224,49 +225,49 @@ class BlockSource final : public transfer::Source {
   /// `since`: since when it waits.
   static Due due(const Place& place, std::optional<Time> since, const Waits& waits, Time now);
   Waits held() const { return {params_.hold, 2 * params_.hold, params_.max_hold}; }
-  /// Whether a place of Peer::unseen is to go in voxels of 0.4 m.
+  /// Whether a place of BlockRecipient::unseen is to go in voxels of 0.4 m.
   bool goes_coarse(const Place& place, std::uint16_t peer, Time now) const {
     return !place.is_fine(peer) && now - place.changed < params_.hold;
   }
   struct Choice;
   /// Whether a peer is to have voxels of 0.4 m of all that it lacks before any of 0.2 m: notes when that
   /// begins and ends.
-  bool is_coarse_first(Peer& peer, std::size_t max_bytes) const;
+  bool is_coarse_first(BlockRecipient& peer, std::size_t max_bytes) const;
   /// Places for a piece, all of one group. Defined in block_choice.cpp, as all that it calls.
-  std::vector<Part> choose(Peer& peer, std::size_t max_bytes, Time now);
-  std::vector<Part> choose_coarse(Peer& peer);
-  void add_focused(Peer& peer, Time now, Choice& out);
+  std::vector<Part> choose(BlockRecipient& peer, std::size_t max_bytes, Time now);
+  std::vector<Part> choose_coarse(BlockRecipient& peer);
+  void add_focused(BlockRecipient& peer, Time now, Choice& out);
   /// Adds what a peer lacks of a region at one x; returns how many cells were looked at.
-  std::size_t add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Time now,
+  std::size_t add_slice(const BlockRecipient& peer, const BlockRegion& region, std::int32_t x, Time now,
                         Choice& out) const;
-  static void begin_focus(Peer& peer);
-  void add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const;
+  static void begin_focus(BlockRecipient& peer);
+  void add_unseen(const BlockRecipient& peer, Duration wait, Time now, Choice& out) const;
   /// Adds at most `most` of these places that are due; returns how many.
-  std::size_t add_held(const Peer& peer, const std::map<std::uint64_t, Cell>& places, std::size_t most,
-                       Time now, Choice& out) const;
-  void add_resting(const Peer& peer, Time now, Choice& out) const;
-  void add_changed(Peer& peer, Time now, Choice& out);
+  std::size_t add_held(const BlockRecipient& peer, const std::map<std::uint64_t, LatticeCell>& places,
+                       std::size_t most, Time now, Choice& out) const;
+  void add_resting(const BlockRecipient& peer, Time now, Choice& out) const;
+  void add_changed(BlockRecipient& peer, Time now, Choice& out);
   /// Erases a block; what was seen stays as it is.
   void erase(const Ref& ref);
   /// Erases blocks that show nothing any more, whatever comes: three newer ones know each of their voxels. So
   /// a place takes the space of a few submaps, however often the robot comes there.
-  void prune(const Cell& cell);
+  void prune(const LatticeCell& cell);
   /// Whether three newer blocks of a place than that at `position` know each of its voxels.
-  bool is_outvoted(const Cell& cell, const Place& place, std::size_t position) const;
+  bool is_outvoted(const LatticeCell& cell, const Place& place, std::size_t position) const;
   void make_room();
 
   BlockSourceParams params_;
   std::map<std::uint32_t, SubmapPlace> names_{};
   std::map<std::uint64_t, std::uint32_t> first_{};  ///< The first submap of each group.
   std::map<Ref, Block> blocks_{};
-  std::map<Cell, Place> cells_{};
+  std::map<LatticeCell, Place> cells_{};
   std::map<std::uint32_t, std::size_t> pruned_{};
-  std::map<transfer::PeerId, Peer> peers_{};
+  std::map<transfer::PeerId, BlockRecipient> peers_{};
   std::map<std::uint64_t, std::vector<Part>> flights_{};  ///< Pieces on their way, by token.
   std::vector<BlockRegion> focus_{};
   Time now_{};
-  /// Of a block in a piece, in the mean: as a whole, what changed, and in voxels of 0.4 m.
-  double whole_bytes_{4.0}, change_bytes_{2.0}, coarse_bytes_{1.0};
+  /// Of a block in a piece, in the mean: complete, what changed, and in voxels of 0.4 m.
+  double complete_bytes_{4.0}, change_bytes_{2.0}, coarse_bytes_{1.0};
   std::uint64_t changes_{};
   std::uint64_t tokens_{};
   std::uint64_t dropped_{};

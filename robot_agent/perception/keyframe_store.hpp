@@ -12,7 +12,7 @@
 namespace adit::agent {
 
 /// The robot's last keyframes, in memory and on the disk, by which an agent that starts again recognises
-/// where the robot is. One is kept for each metre of the way, at most kMax, each in a file of its own (12
+/// where the robot is. One is stored for each metre of the way, at most kMax, each in a file of its own (12
 /// kB), so that a write is short. A disk that fails costs nothing but this. Runs on the command strand; the
 /// disk is written on another one.
 class KeyframeStore {

@@ -26,21 +26,21 @@ constexpr double kRouteHeight = 1.6;      // m above and below.
 constexpr double kAnyHeight = 1000.0;     // m
 constexpr std::size_t kGroups = 8;        // The newest ones, in which the focus is looked for.
 
-/// The whole number next to a coordinate, in blocks.
-std::int32_t whole(double blocks) {
+/// The integer next to a coordinate, in blocks.
+std::int32_t rounded(double blocks) {
   return static_cast<std::int32_t>(std::clamp(std::round(blocks), -1e9, 1e9));
 }
 
 /// Index of the block of the odometry frame's lattice at a submap's origin.
 BlockIndex lattice(const Pose3& T_odom_submap) {
   const Eigen::Vector3d at = T_odom_submap.position / BlockIndex::kSize;
-  return {whole(at.x()), whole(at.y()), whole(at.z())};
+  return {rounded(at.x()), rounded(at.y()), rounded(at.z())};
 }
 
 /// The block of a lattice that contains a point (lattice frame, m).
 BlockIndex block_of(const Eigen::Vector3d& point) {
   const Eigen::Array3d at = (point / BlockIndex::kSize).array().floor();
-  return {whole(at.x()), whole(at.y()), whole(at.z())};
+  return {rounded(at.x()), rounded(at.y()), rounded(at.z())};
 }
 
 }  // namespace

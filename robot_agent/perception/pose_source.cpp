@@ -8,7 +8,7 @@ void PoseSource::open(std::uint32_t submap, std::uint64_t start, std::uint32_t i
   names_[submap] = {start, index, revision};
 }
 
-perception::SubmapPose PoseSource::content(std::uint32_t submap, const Entry& entry) const {
+perception::SubmapPose PoseSource::content(std::uint32_t submap, const PlacedSubmap& entry) const {
   const auto named = names_.find(submap);
   if (named == names_.end()) return {{robot_, start_, submap}, entry.T_map_submap, entry.revision};
   const Name& name = named->second;
@@ -60,7 +60,7 @@ std::optional<transfer::Source::Content> PoseSource::next(std::span<const transf
   std::vector<Part> parts;
   for (auto it = first->second.rbegin();
        it != first->second.rend() && parts.size() < perception::kMaxPiecePoses; ++it) {
-    const Entry& entry = poses_.at(*it);
+    const PlacedSubmap& entry = poses_.at(*it);
     piece.poses.push_back(content(*it, entry));
     parts.push_back({*it, entry.revision});
   }

@@ -42,7 +42,7 @@ class PoseSource final : public transfer::Source {
   void settled(std::uint64_t token) override { flights_.erase(token); }
 
  private:
-  struct Entry {
+  struct PlacedSubmap {
     Pose3 T_map_submap{};
     std::uint32_t revision{};
   };
@@ -51,7 +51,7 @@ class PoseSource final : public transfer::Source {
     std::uint32_t index{};
     std::uint32_t revision{};
   };
-  perception::SubmapPose content(std::uint32_t submap, const Entry& entry) const;
+  perception::SubmapPose content(std::uint32_t submap, const PlacedSubmap& entry) const;
 
   struct Part {
     std::uint32_t submap{};
@@ -59,7 +59,7 @@ class PoseSource final : public transfer::Source {
   };
   std::string robot_;
   std::uint64_t start_;
-  std::map<std::uint32_t, Entry> poses_{};
+  std::map<std::uint32_t, PlacedSubmap> poses_{};
   std::map<std::uint32_t, Name> names_{};
   std::map<transfer::PeerId, std::set<std::uint32_t>> peers_{};  ///< Submaps whose pose each lacks.
   std::map<std::uint64_t, std::vector<Part>> flights_{};

@@ -27,12 +27,12 @@ Result<MemoryUse> memory_use() {
 }
 
 Result<double> data_limit(double limit, const MemoryUse& now) {
-  if (limit < now.touched + kLeastRoom)
+  if (limit < now.touched + kMinRoom)
     return Error{Reason::out_of_range,
                  "memory_limit: " + std::to_string(static_cast<long>(limit)) + " MB is too little, " +
                      std::to_string(static_cast<long>(std::ceil(now.touched))) +
                      " MB are in use after the start; at least " +
-                     std::to_string(static_cast<long>(std::ceil(now.touched + kToldRoom)))};
+                     std::to_string(static_cast<long>(std::ceil(now.touched + kReportedRoom)))};
   return now.reserved + (limit - now.touched);
 }
 

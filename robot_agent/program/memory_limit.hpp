@@ -15,12 +15,12 @@ Result<MemoryUse> memory_use();
 
 /// Memory that an agent needs in addition to its use after the start, for scans, plans and peers, MB. The
 /// minimum reported in errors includes a larger margin, because starts differ.
-inline constexpr double kLeastRoom = 12.0;
-inline constexpr double kToldRoom = 24.0;
+inline constexpr double kMinRoom = 12.0;
+inline constexpr double kReportedRoom = 24.0;
 
 /// The value of RLIMIT_DATA, MB, with which `limit` bounds the touched memory and all further allocations;
 /// reserved pages that were never used do not count. Errors: out_of_range, with the smallest sufficient
-/// limit, if `limit` leaves less than kLeastRoom above the touched memory.
+/// limit, if `limit` leaves less than kMinRoom above the touched memory.
 Result<double> data_limit(double limit, const MemoryUse& now);
 
 /// Bounds this process from now on: allocations beyond the limit, MB, fail. 0: no limit. Call it after the

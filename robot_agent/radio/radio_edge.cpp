@@ -203,13 +203,13 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                      return answer(given);
                    find_route(place_of(command.request),
                               [answer, given = *given](const Result<PlannedRoute>& route) {
-                                Answer told = given;
-                                told.reason = route ? Reason::none : route.reason();
+                                Answer with_route = given;
+                                with_route.reason = route ? Reason::none : route.reason();
                                 if (route)
-                                  told.route = *route;
+                                  with_route.route = *route;
                                 else
-                                  told.text = route.error().text;
-                                answer(told);
+                                  with_route.text = route.error().text;
+                                answer(with_route);
                               });
                  });
                },

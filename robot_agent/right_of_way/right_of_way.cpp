@@ -187,25 +187,25 @@ void RightOfWay::keep_distance(const Own& own, const Blocker& before, Time now) 
 void RightOfWay::watch_wall(const Peer* wall, Time now) {
   if (!wall) {
     if (!wall_gone_) wall_gone_ = now;
-    if (now - *wall_gone_ > kAskKept) wall_told_.clear();
+    if (now - *wall_gone_ > kAskTimeout) reported_wall_.clear();
     return;
   }
   wall_gone_.reset();
-  if (wall_told_ == wall->name || now - blocked_since_ < kTellAfter) return;
-  wall_told_ = wall->name;
+  if (reported_wall_ == wall->name || now - blocked_since_ < kReportAfter) return;
+  reported_wall_ = wall->name;
   const TeamBeacon& beacon = wall->heard_beacon->beacon;
   const std::string who = params_.robot + " waits for " + wall->name;
   if (refuses(beacon, claim_.root) && has_refused(claim(beacon).root))
-    return outputs_.tell_holder({{},
-                                 Severity::warning,
-                                 "yield_deadlock",
-                                 Reason::yield_deadlock,
-                                 who + ", and neither has a place to make way"});
+    return outputs_.notify_holder({{},
+                                   Severity::warning,
+                                   "yield_deadlock",
+                                   Reason::yield_deadlock,
+                                   who + ", and neither has a place to make way"});
   const std::string why = beacon.stopped ? "is stopped"
                           : refuses(beacon, claim_.root)
                               ? "finds no place to make way"
                               : "may not make way; allow it with: yield " + wall->name + " on";
-  outputs_.tell_holder(
+  outputs_.notify_holder(
       {{}, Severity::warning, "yield_refused", Reason::yield_refused, who + ", which " + why});
 }
 
@@ -293,7 +293,7 @@ void RightOfWay::clear(const Own& own, Time now) {
     way.blocked_since.reset();
   else if (!way.blocked_since)
     way.blocked_since = now;
-  if (now - way.heard > kAskKept || now - way.since > kLongest) return end(now);
+  if (now - way.heard > kAskTimeout || now - way.since > kLongest) return end(now);
   if (!renewed || (searches_since_ && now - *searches_since_ < kSearchLost)) return;
   // The way is blocked, or the robot stands at its place and the corridor has moved there: another place.
   const bool needs = (way.blocked_since && now - *way.blocked_since > kBlocked) ||
@@ -314,7 +314,7 @@ void RightOfWay::end(Time now) {
   char text[96];
   std::snprintf(text, sizeof text, "%s made way for %s and stays %.1f m from where it was",
                 params_.robot.c_str(), way.root.c_str(), (way.place - way.from).norm());
-  outputs_.tell_holder({{}, Severity::info, "made_way", Reason::none, text});
+  outputs_.notify_holder({{}, Severity::info, "made_way", Reason::none, text});
 }
 
 void RightOfWay::say(TeamBeacon& beacon) const {

@@ -35,18 +35,18 @@ struct RightOfWayParams {
 /// Runs on the command strand; bounded by the number of peers.
 class RightOfWay {
  public:
-  static constexpr Duration kHeard = 3s;        ///< An older beacon says nothing of where a robot is.
-  static constexpr Duration kAskKept = 4500ms;  ///< An ask that is not renewed for longer has ended.
-  static constexpr Duration kLongest = 90s;     ///< Longest time that a robot makes way.
-  static constexpr Duration kRefused = 10s;     ///< The answer `cannot` is kept for so long.
-  static constexpr Duration kBlocked = 8s;      ///< A way that is blocked for longer leads nowhere.
-  static constexpr Duration kPersists = 1s;     ///< A robot must be in the way for so long.
-  static constexpr Duration kTellAfter = 3s;    ///< And so long until the operator is notified.
-  static constexpr Duration kWaits = 10s;       ///< Longest wait for the answer of a robot that may make way.
-  static constexpr double kStands = 0.1;        ///< Slower is standing, m/s.
-  static constexpr double kLookAhead = 20.0;    ///< m
-  static constexpr double kMargin = 0.3;        ///< Between two robots that pass each other, m.
-  static constexpr double kDistance = 2.0;      ///< From a robot that makes way, outline to outline, m.
+  static constexpr Duration kHeard = 3s;           ///< An older beacon says nothing of where a robot is.
+  static constexpr Duration kAskTimeout = 4500ms;  ///< An ask that is not renewed for longer has ended.
+  static constexpr Duration kLongest = 90s;        ///< Longest time that a robot makes way.
+  static constexpr Duration kRefused = 10s;        ///< How long the answer `cannot` is repeated.
+  static constexpr Duration kBlocked = 8s;         ///< A way that is blocked for longer leads nowhere.
+  static constexpr Duration kPersists = 1s;        ///< A robot must be in the way for so long.
+  static constexpr Duration kReportAfter = 3s;     ///< How long, until the operator is notified.
+  static constexpr Duration kWaits = 10s;     ///< Longest wait for the answer of a robot that may make way.
+  static constexpr double kStands = 0.1;      ///< Slower is standing, m/s.
+  static constexpr double kLookAhead = 20.0;  ///< m
+  static constexpr double kMargin = 0.3;      ///< Between two robots that pass each other, m.
+  static constexpr double kDistance = 2.0;    ///< From a robot that makes way, outline to outline, m.
 
   /// What this robot does now. Map frame, m.
   struct Own {
@@ -68,7 +68,7 @@ class RightOfWay {
     /// Enters `get_out`. Errors: the first condition that does not hold.
     std::function<Result<void>(Time)> clear_way{};
     std::function<void(Time)> resume{};  ///< Leaves `get_out` for the mode before it.
-    std::function<void(const Notice&)> tell_holder{};
+    std::function<void(const Notice&)> notify_holder{};
   };
 
   RightOfWay(RightOfWayParams params, const PeerTable& peers, Outputs outputs)
@@ -173,7 +173,7 @@ class RightOfWay {
   std::vector<Eigen::Vector2d> route_{};
   std::string blocked_by_{};
   Time blocked_since_{};
-  std::string wall_told_{};
+  std::string reported_wall_{};
   std::optional<Time> wall_gone_{};
   double speed_limit_{std::numeric_limits<double>::infinity()};
 };

@@ -30,12 +30,12 @@ Safeguards::Safeguards(SafeguardParams params, std::string robot, const Pose2& s
       battery_watch_(params_.battery),
       battery_return_(params_.return_retry) {}
 
-void Safeguards::restore(std::uint8_t kept, Time now) {
-  battery_watch_.restore(static_cast<BatteryLevel>(std::min(kept, kLastLevel)));
-  if (kept > kLastLevel) battery_return_.begin(dependencies_.behaviour.holder_requests(), now);
+void Safeguards::restore(std::uint8_t stored, Time now) {
+  battery_watch_.restore(static_cast<BatteryLevel>(std::min(stored, kLastLevel)));
+  if (stored > kLastLevel) battery_return_.begin(dependencies_.behaviour.holder_requests(), now);
 }
 
-std::uint8_t Safeguards::kept() const {
+std::uint8_t Safeguards::stored() const {
   const auto level = static_cast<std::uint8_t>(battery_watch_.level());
   return level == kLastLevel && battery_return_.pending(dependencies_.behaviour.holder_requests())
              ? kLastLevel + 1

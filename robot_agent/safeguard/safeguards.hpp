@@ -29,11 +29,11 @@ class Safeguards {
   /// `robot`: name of the robot. `start`: its start pose, map frame.
   Safeguards(SafeguardParams params, std::string robot, const Pose2& start, const Dependencies& dependencies);
 
-  /// Restores the state that kept() returned before a restart.
-  void restore(std::uint8_t kept, Time now);
+  /// Restores the state that stored() returned before a restart.
+  void restore(std::uint8_t stored, Time now);
   /// The state that must survive a restart: the last threshold that was passed, and whether a return is still
   /// pending. See Snapshot::battery.
-  std::uint8_t kept() const;
+  std::uint8_t stored() const;
   /// Checks the link to the holder, and repeats a refused return. Call it once a second.
   void tick(Time now);
   /// Processes a new state of charge, [0, 1]; a value that is not finite counts as unknown.

@@ -22,7 +22,7 @@ struct Row {
   store::SectionTag tag;
   std::uint16_t version;  ///< Rises when the layout of the payload changes; only this layout is read.
   const char* name;       ///< As operators read it in `state_damaged`.
-  bool always;  ///< Every state has this section: if it is missing, it was lost.
+  bool always;            ///< Every state has this section: if it is missing, it was lost.
   /// Calls `add` with each payload; most rows have one.
   void (*write)(const Snapshot& snapshot, const std::function<void(const Packer&)>& add);
   /// Reads one payload into the snapshot. Returns false and leaves the snapshot unchanged if the payload is
@@ -90,7 +90,7 @@ bool read_mode(Unpacker& in, Snapshot& s) {
 
 bool read_answers(Unpacker& in, Snapshot& s) {
   auto value = checked(in, fields::answers(in));
-  if (!value || s.answers.size() >= KeptAnswers::kParticipants) return false;
+  if (!value || s.answers.size() >= StoredAnswers::kParticipants) return false;
   s.answers.push_back(std::move(*value));
   return true;
 }
@@ -142,7 +142,7 @@ const std::array kRows{
         "state of a mode",
         false,
         [](const Snapshot& s, const auto& add) {
-          for (const KeptMode& mode : s.behaviour.modes) add_one(add, mode);
+          for (const StoredMode& mode : s.behaviour.modes) add_one(add, mode);
         },
         read_mode},
     Row{{'A', 'N', 'S', 'W'},
@@ -150,7 +150,7 @@ const std::array kRows{
         "answers to a station",
         false,
         [](const Snapshot& s, const auto& add) {
-          for (const KeptAnswers& from : s.answers) add_one(add, from);
+          for (const StoredAnswers& from : s.answers) add_one(add, from);
         },
         read_answers},
 };
@@ -174,9 +174,9 @@ void lose(ReadSnapshot& read, const Row& row) {
 
 }  // namespace
 
-const store::Bytes* KeptBehaviour::of(std::string_view module) const {
+const store::Bytes* StoredBehaviour::of(std::string_view module) const {
   const auto found =
-      std::find_if(modes.begin(), modes.end(), [&](const KeptMode& m) { return m.mode == module; });
+      std::find_if(modes.begin(), modes.end(), [&](const StoredMode& m) { return m.mode == module; });
   return found == modes.end() ? nullptr : &found->bytes;
 }
 
@@ -187,8 +187,8 @@ Snapshot sanitized(Snapshot s) {
   s.behaviour = fields::sanitized(std::move(s.behaviour));
   s.battery = fields::sanitized_battery(s.battery);
   if (s.place) s.place = fields::sanitized(*s.place);
-  if (s.answers.size() > KeptAnswers::kParticipants) s.answers.resize(KeptAnswers::kParticipants);
-  for (KeptAnswers& from : s.answers) from = fields::sanitized(std::move(from));
+  if (s.answers.size() > StoredAnswers::kParticipants) s.answers.resize(StoredAnswers::kParticipants);
+  for (StoredAnswers& from : s.answers) from = fields::sanitized(std::move(from));
   return s;
 }
 

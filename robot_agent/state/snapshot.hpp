@@ -8,47 +8,47 @@
 
 #include "core/store/state_file.hpp"
 #include "nav/areas/area_set.hpp"
-#include "robot_agent/command/kept.hpp"
+#include "robot_agent/command/stored_authority.hpp"
 #include "robot_agent/motion/stored_frames.hpp"
 
 namespace adit::agent {
 
 /// State that a mode's module stores, beside the goal of `waypoint`.
-struct KeptMode {
+struct StoredMode {
   std::string mode{};
   store::Bytes bytes{};  ///< At most Snapshot::kModeBytes; only that module reads them.
-  bool operator==(const KeptMode&) const = default;
+  bool operator==(const StoredMode&) const = default;
 };
 
 /// State of the behaviour: what was requested, not what the tree decided.
-struct KeptBehaviour {
+struct StoredBehaviour {
   std::string mode{"hold"};
   Reason reason{Reason::none};  ///< Why the robot fell to hold.
   bool goal_known{}, goal_reached{};
   std::uint32_t goal_id{};
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};  ///< Map frame, m.
   bool goal_on_floor{};                           ///< The goal has no z of its own.
-  std::vector<KeptMode> modes{};                  ///< At most Snapshot::kModes, each mode once.
+  std::vector<StoredMode> modes{};                ///< At most Snapshot::kModes, each mode once.
 
   nav::AreaSet areas{};  ///< Map frame.
 
   /// The bytes that a mode's module stored; null: none.
   const store::Bytes* of(std::string_view module) const;
-  bool operator==(const KeptBehaviour&) const = default;
+  bool operator==(const StoredBehaviour&) const = default;
 };
 
 /// The last known safe state (rule 7), from which an agent restarts.
 struct Snapshot {
   static constexpr std::size_t kStops = 16, kModes = 8, kModeBytes = 512;
 
-  KeptAuthority authority{};
-  KeptBehaviour behaviour{};
+  StoredAuthority authority{};
+  StoredBehaviour behaviour{};
   std::uint64_t boot{};  ///< Boot id of the computer when the state was written; 0: unknown.
   /// Threshold of the charge that was passed last: 0 none, 1 warning, 2 low, 3 last; 4: last, and the return
   /// to the start is still pending.
   std::uint8_t battery{};
   std::optional<StoredFrames> place{};  ///< Unset: it could not be read.
-  std::vector<KeptAnswers> answers{};
+  std::vector<StoredAnswers> answers{};
   /// Compares all but the answers and the odometry, i.e. the state that must survive a restart.
   bool same_state(const Snapshot& other) const {
     return authority == other.authority && behaviour == other.behaviour && boot == other.boot &&

@@ -21,7 +21,7 @@ Party party(Unpacker& in) {
   return p;
 }
 
-void put(Packer& out, const std::optional<Binding::Kept>& speaker) {
+void put(Packer& out, const std::optional<Binding::Stored>& speaker) {
   out.flag(speaker.has_value());
   if (!speaker) return;
   out.put(speaker->participant);
@@ -31,26 +31,26 @@ void put(Packer& out, const std::optional<Binding::Kept>& speaker) {
   }
 }
 
-std::optional<Binding::Kept> speaker(Unpacker& in) {
+std::optional<Binding::Stored> speaker(Unpacker& in) {
   if (!in.flag()) return std::nullopt;
-  Binding::Kept kept{};
-  kept.participant = in.array<12>();
-  if (in.flag()) kept.previous = in.array<12>();
-  if (in.flag()) kept.rejected = in.array<12>();
-  return kept;
+  Binding::Stored stored{};
+  stored.participant = in.array<12>();
+  if (in.flag()) stored.previous = in.array<12>();
+  if (in.flag()) stored.rejected = in.array<12>();
+  return stored;
 }
 
 }  // namespace
 
-void put(Packer& out, const KeptAuthority& authority) {
+void put(Packer& out, const StoredAuthority& authority) {
   out.put(authority.epoch.start).put(authority.epoch.counter).flag(authority.holder.has_value());
   if (authority.holder) put(out, *authority.holder);
   put(out, authority.speaker);
   out.flag(authority.locked);
 }
 
-KeptAuthority authority(Unpacker& in) {
-  KeptAuthority a{};
+StoredAuthority authority(Unpacker& in) {
+  StoredAuthority a{};
   a.epoch.start = in.get<std::uint64_t>();
   a.epoch.counter = in.get<std::uint32_t>();
   if (in.flag()) a.holder = party(in);
@@ -59,7 +59,7 @@ KeptAuthority authority(Unpacker& in) {
   return a;
 }
 
-KeptAuthority sanitized(KeptAuthority a) {
+StoredAuthority sanitized(StoredAuthority a) {
   if (a.holder && !valid_name(a.holder->name)) a.holder.reset();
   if (!a.holder) a.speaker.reset();
   if (!a.holder) a.locked = false;
@@ -90,15 +90,15 @@ std::vector<Party> sanitized(std::vector<Party> stops) {
   return stops;
 }
 
-void put(Packer& out, const KeptBehaviour& b) {
+void put(Packer& out, const StoredBehaviour& b) {
   out.text(b.mode).put(static_cast<std::uint16_t>(b.reason));
   out.flag(b.goal_known).flag(b.goal_reached).put(b.goal_id);
   for (const double value : {b.goal.x(), b.goal.y(), b.goal.z()}) out.put(value);
   out.flag(b.goal_on_floor);
 }
 
-KeptBehaviour behaviour(Unpacker& in) {
-  KeptBehaviour b{};
+StoredBehaviour behaviour(Unpacker& in) {
+  StoredBehaviour b{};
   b.mode = in.text(kName);
   b.reason = static_cast<Reason>(in.get<std::uint16_t>());
   b.goal_known = in.flag();
@@ -109,7 +109,7 @@ KeptBehaviour behaviour(Unpacker& in) {
   return b;
 }
 
-KeptBehaviour sanitized(KeptBehaviour b) {
+StoredBehaviour sanitized(StoredBehaviour b) {
   if (!valid_name(b.mode)) b.mode = "hold";
   if (!b.goal.allFinite()) {
     b.goal.setZero();
@@ -120,10 +120,10 @@ KeptBehaviour sanitized(KeptBehaviour b) {
     return valid && *valid == area;
   });
   // A module's state that does not fit, or is its second one, is left out: the module starts without it.
-  std::vector<KeptMode> modes;
-  for (KeptMode& m : b.modes) {
-    const bool twice =
-        std::any_of(modes.begin(), modes.end(), [&](const KeptMode& other) { return other.mode == m.mode; });
+  std::vector<StoredMode> modes;
+  for (StoredMode& m : b.modes) {
+    const bool twice = std::any_of(modes.begin(), modes.end(),
+                                   [&](const StoredMode& other) { return other.mode == m.mode; });
     if (valid_name(m.mode) && m.bytes.size() <= Snapshot::kModeBytes && !twice) modes.push_back(std::move(m));
   }
   b.modes = std::move(modes);
@@ -158,20 +158,21 @@ void put(Packer& out, const StoredFrames& place) {
 }
 
 StoredFrames place(Unpacker& in) {
-  StoredFrames kept{};
-  for (double* value : {&kept.T_map_odom.x, &kept.T_map_odom.y, &kept.T_map_odom.yaw}) *value = in.number();
-  kept.odom_epoch = in.get<std::uint32_t>();
+  StoredFrames stored{};
+  for (double* value : {&stored.T_map_odom.x, &stored.T_map_odom.y, &stored.T_map_odom.yaw})
+    *value = in.number();
+  stored.odom_epoch = in.get<std::uint32_t>();
   if (in.flag()) {
-    OdometrySample& newest = kept.newest.emplace();
+    OdometrySample& newest = stored.newest.emplace();
     get(in, newest.T_odom_base);
     newest.stamp = in.get<std::uint64_t>();
     newest.received = from_stamp(in.get<std::uint64_t>());
   }
-  if (in.flag()) kept.height = in.number();
-  kept.map_epoch = in.get<std::uint32_t>();
-  get(in, kept.T_odom_driver);
-  kept.recognised = in.flag();
-  return kept;
+  if (in.flag()) stored.height = in.number();
+  stored.map_epoch = in.get<std::uint32_t>();
+  get(in, stored.T_odom_driver);
+  stored.recognised = in.flag();
+  return stored;
 }
 
 // An invalid place counts as missing odometry: no mode resumes by itself.
@@ -210,63 +211,63 @@ nav::Area area(Unpacker& in) {
   return a;
 }
 
-void put(Packer& out, const KeptMode& mode) {
+void put(Packer& out, const StoredMode& mode) {
   out.text(mode.mode).put(static_cast<std::uint16_t>(mode.bytes.size())).raw(mode.bytes);
 }
 
-KeptMode mode(Unpacker& in) {
-  KeptMode m{};
+StoredMode mode(Unpacker& in) {
+  StoredMode m{};
   m.mode = in.text(kName);
   m.bytes.resize(in.count(Snapshot::kModeBytes));
   for (std::uint8_t& byte : m.bytes) byte = in.get<std::uint8_t>();
   return m;
 }
 
-KeptMode sanitized(KeptMode m) {
+StoredMode sanitized(StoredMode m) {
   if (!valid_name(m.mode)) m.mode = "hold";
   m.bytes.resize(std::min(m.bytes.size(), Snapshot::kModeBytes));
   return m;
 }
 
-void put(Packer& out, const KeptAnswers& from) {
+void put(Packer& out, const StoredAnswers& from) {
   out.put(from.participant).text(from.station).put(from.station_id);
   out.put(from.newest).put(from.floor);
   for (const std::uint64_t newest : from.newest_of) out.put(newest);
   out.put(static_cast<std::uint16_t>(from.answers.size()));
-  for (const KeptAnswer& a : from.answers)
+  for (const StoredAnswer& a : from.answers)
     out.put(a.seq).put(static_cast<std::uint16_t>(a.reason)).text(a.text);
 }
 
-KeptAnswers answers(Unpacker& in) {
-  KeptAnswers from{};
+StoredAnswers answers(Unpacker& in) {
+  StoredAnswers from{};
   from.participant = in.array<12>();
   from.station = in.text(kName);
   from.station_id = in.array<16>();
   from.newest = in.get<std::uint64_t>();
   from.floor = in.get<std::uint64_t>();
   for (std::uint64_t& newest : from.newest_of) newest = in.get<std::uint64_t>();
-  for (std::size_t left = in.count(KeptAnswers::kAnswers); left > 0; --left) {
-    KeptAnswer a{};
+  for (std::size_t left = in.count(StoredAnswers::kAnswers); left > 0; --left) {
+    StoredAnswer a{};
     a.seq = in.get<std::uint64_t>();
     a.reason = static_cast<Reason>(in.get<std::uint16_t>());
-    a.text = in.text(KeptAnswer::kText);
+    a.text = in.text(StoredAnswer::kText);
     from.answers.push_back(std::move(a));
   }
   return from;
 }
 
 // An omitted answer counts as too old: its command is refused and not executed again.
-KeptAnswers sanitized(KeptAnswers from) {
+StoredAnswers sanitized(StoredAnswers from) {
   if (!valid_name(from.station)) from.station.clear();
-  const auto invalid = [&](const KeptAnswer& a) { return a.seq == 0 || a.seq > from.newest; };
+  const auto invalid = [&](const StoredAnswer& a) { return a.seq == 0 || a.seq > from.newest; };
   std::erase_if(from.answers, invalid);
-  if (from.answers.size() > KeptAnswers::kAnswers) {
-    from.answers.erase(from.answers.begin(), from.answers.end() - KeptAnswers::kAnswers);
-    const auto before = [](const KeptAnswer& a, const KeptAnswer& b) { return a.seq < b.seq; };
+  if (from.answers.size() > StoredAnswers::kAnswers) {
+    from.answers.erase(from.answers.begin(), from.answers.end() - StoredAnswers::kAnswers);
+    const auto before = [](const StoredAnswer& a, const StoredAnswer& b) { return a.seq < b.seq; };
     from.floor =
         std::max(from.floor, std::min_element(from.answers.begin(), from.answers.end(), before)->seq);
   }
-  for (KeptAnswer& a : from.answers) a.text.resize(std::min(a.text.size(), KeptAnswer::kText));
+  for (StoredAnswer& a : from.answers) a.text.resize(std::min(a.text.size(), StoredAnswer::kText));
   return from;
 }
 

@@ -137,7 +137,7 @@ StateKeeper::StateKeeper(KeeperParams params, std::shared_ptr<store::Disk> disk,
 
 StateKeeper::~StateKeeper() = default;
 
-void StateKeeper::save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers,
+void StateKeeper::save(Snapshot state, const std::function<std::vector<StoredAnswers>()>& answers,
                        std::uint64_t accepted) {
   Writer& w = *writer_;
   const bool same = w.state && w.state->same_state(state);

@@ -40,7 +40,7 @@ class StateKeeper {
   /// were accepted, because their answers must survive a restart even if they changed nothing. While only the
   /// place changes, it is written once a second, and no answer waits for that write. `answers` is called only
   /// for a write.
-  void save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers,
+  void save(Snapshot state, const std::function<std::vector<StoredAnswers>()>& answers,
             std::uint64_t accepted = 0);
   /// Runs `task` once every state passed so far is on disk; at once if it already is, or if the disk fails.
   /// At most 256 tasks are queued: beyond that the oldest is dropped, and the station repeats its command.

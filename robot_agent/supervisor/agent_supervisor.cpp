@@ -93,7 +93,7 @@ class AgentSupervisor::Impl {
     });
   }
   void touched() { changed_ = true; }
-  void tell_escalated(const std::string& why) {
+  void report_escalated(const std::string& why) {
     say(Severity::error, "escalated", why + "; the agent is restarted");
   }
 
@@ -116,7 +116,7 @@ class AgentSupervisor::Impl {
       case PartEvent::Kind::back:
         return say(Severity::info, "component_back", part + ": " + event.text);
       case PartEvent::Kind::escalated:
-        return tell_escalated(event.text);
+        return report_escalated(event.text);
     }
   }
   void say(Severity severity, const char* code, const std::string& text) {
@@ -185,7 +185,7 @@ void AgentSupervisor::note(ComponentHealth row, std::optional<Time> heard) {
 Result<void> AgentSupervisor::restart(const std::string& component) {
   if (component == kAgent) {
     impl_->strand().post_control([impl = impl_.get()] {
-      impl->tell_escalated("an operator asked for it");
+      impl->report_escalated("an operator asked for it");
       impl->escalate("an operator asked for it");
     });
     return {};

@@ -54,7 +54,7 @@ class AgentBench {
     bool up{true};
     Timer beat{};
 
-    std::vector<std::string> told() const {
+    std::vector<std::string> notice_codes() const {
       std::vector<std::string> codes;
       for (const auto& n : notices)
         if (n.operator_name() == name || n.operator_name().empty()) codes.push_back(n.code());

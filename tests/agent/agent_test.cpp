@@ -50,7 +50,7 @@ TEST_F(AgentTest, TakenByOneThenByTheOther) {
   EXPECT_EQ(op2.authority.holder(), "op1");
   EXPECT_EQ(bench.ask(op2, radio::CMD_TAKE), Reason::none);
   EXPECT_EQ(op1.authority.holder(), "op2");
-  EXPECT_THAT(op1.told(), ElementsAre("taken"));
+  EXPECT_THAT(op1.notice_codes(), ElementsAre("taken"));
 }
 
 TEST_F(AgentTest, RepeatsAreAnsweredButDoneOnce) {
@@ -86,7 +86,7 @@ TEST_F(AgentTest, SilentJoystickIsZeroThenHold) {
   EXPECT_EQ(op1.behaviour.mode(), "manual");
   bench.run(700ms);
   EXPECT_EQ(op1.behaviour.mode(), "hold");
-  EXPECT_THAT(op1.told(), Contains("joystick_lost"));
+  EXPECT_THAT(op1.notice_codes(), Contains("joystick_lost"));
 }
 
 TEST_F(AgentTest, StopOfAnotherIsZeroAtOnce) {
@@ -98,7 +98,7 @@ TEST_F(AgentTest, StopOfAnotherIsZeroAtOnce) {
   bench.stream(op1, 0.5, 300ms);
   EXPECT_EQ(bench.command, Twist2{});
   EXPECT_TRUE(op1.behaviour.stopped());
-  EXPECT_THAT(op1.told(), Contains("stopped"));
+  EXPECT_THAT(op1.notice_codes(), Contains("stopped"));
   EXPECT_EQ(bench.ask(op1, radio::CMD_RESET), Reason::stop_of_another);
   EXPECT_EQ(bench.ask(op1, radio::CMD_RESET, {}, 0, 0, true), Reason::none);
   bench.stream(op1, 0.5, 300ms);
@@ -114,7 +114,7 @@ TEST_F(AgentTest, DrivesToItsGoal) {
   EXPECT_NEAR(bench.pose.x, 4.0, 0.4);
   EXPECT_NEAR(bench.pose.y, 1.0, 0.4);
   EXPECT_EQ(op1.behaviour.goal_state(), radio::GOAL_REACHED);
-  EXPECT_THAT(op1.told(), Contains("arrived"));
+  EXPECT_THAT(op1.notice_codes(), Contains("arrived"));
   EXPECT_EQ(bench.command, Twist2{});
   EXPECT_NEAR(op1.state.x(), 4.0, 0.4);
 }
@@ -141,7 +141,7 @@ TEST_F(AgentTest, GoalInAnObstacleIsRefused) {
   bench.run(1s);
   take();
   EXPECT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 3.0, 0.0), Reason::goal_unreachable);
-  EXPECT_THAT(op1.told(), Contains("mode_refused"));
+  EXPECT_THAT(op1.notice_codes(), Contains("mode_refused"));
 }
 
 TEST_F(AgentTest, PoseMovesNothingAndHomeGoesToTheStart) {
@@ -169,7 +169,7 @@ class RoutedAgentTest : public testing::Test {
   AgentBench::Operator& op1 = bench.join("op1");
 };
 
-TEST_F(RoutedAgentTest, TellsTheWayToAnybodyAndStays) {
+TEST_F(RoutedAgentTest, AnswersPlanForAnyStationWithoutMoving) {
   const auto way = [&](double x, double y) {
     op1.answers.clear();
     EXPECT_EQ(bench.ask(op1, radio::CMD_PLAN, {}, x, y), Reason::none);
@@ -199,12 +199,12 @@ TEST_F(RoutedAgentTest, SaysWhenItsRouterDoesNotAnswer) {
   EXPECT_THAT(op1.answers.back().text(), HasSubstr("router"));
 }
 
-TEST_F(AgentTest, WithoutARouterThereIsNoWayToTell) {
+TEST_F(AgentTest, PlanIsRefusedWithoutARouter) {
   EXPECT_EQ(bench.ask(op1, radio::CMD_PLAN, {}, 3.0, 0.0), Reason::not_supported);
   EXPECT_FALSE(bench.agent().inject("router", ComponentFault::crash));
 }
 
-TEST(AgentPlatform, ARouterThatThereIsNotIsAnError) {
+TEST(AgentPlatform, AnUnknownRouterIsAnError) {
   AgentParams params{};
   params.platform.router = "magic";
   try {
@@ -215,7 +215,7 @@ TEST(AgentPlatform, ARouterThatThereIsNotIsAnError) {
   }
 }
 
-TEST_F(AgentTest, SilentLidarStopsTheWayAndItGoesOn) {
+TEST_F(AgentTest, StopsWhileTheLidarIsSilentAndContinues) {
   take();
   ASSERT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 8.0, 0.0), Reason::none);
   bench.run(2s);
@@ -230,13 +230,13 @@ TEST_F(AgentTest, SilentLidarStopsTheWayAndItGoesOn) {
   EXPECT_GT(bench.command.vx, 0.1);
 }
 
-TEST_F(AgentTest, SilentDriverEndsManualAndIsTold) {
+TEST_F(AgentTest, ASilentDriverEndsManualAndIsReported) {
   enter_manual();
   bench.driver_alive = false;
   bench.stream(op1, 0.5, 700ms);
   EXPECT_EQ(bench.command, Twist2{});
   EXPECT_EQ(op1.behaviour.mode(), "hold");
-  EXPECT_THAT(op1.told(), Contains("driver_lost"));
+  EXPECT_THAT(op1.notice_codes(), Contains("driver_lost"));
   EXPECT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 1.0, 0.0), Reason::driver_silent);
 }
 
@@ -320,7 +320,7 @@ TEST(AgentRun, RefusedTreeHoldsAndSaysSo) {
     AgentBench bench(AgentParams{}, 1, tree);
     auto& op = bench.join("op1");
     bench.run(2s);
-    EXPECT_THAT(op.told(), testing::Contains("tree_refused"));
+    EXPECT_THAT(op.notice_codes(), testing::Contains("tree_refused"));
     EXPECT_THAT(op.notices,
                 testing::Contains(testing::Property(&radio::Notification::text, testing::HasSubstr(tree))));
     ASSERT_EQ(bench.ask(op, radio::CMD_TAKE), Reason::none);

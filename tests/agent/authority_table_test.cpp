@@ -43,9 +43,9 @@ TEST_P(AuthorityTable, Case) {
   std::vector<std::string> stops;
   for (const Party& stopper : bench.interface().stops().all()) stops.push_back(stopper.name);
   EXPECT_THAT(stops, testing::UnorderedElementsAreArray(c.stops));
-  std::vector<Told> told;
-  for (const Notice& n : bench.notices) told.push_back({n.operator_name, n.code});
-  EXPECT_THAT(told, testing::UnorderedElementsAreArray(c.told));
+  std::vector<Told> reported;
+  for (const Notice& n : bench.notices) reported.push_back({n.operator_name, n.code});
+  EXPECT_THAT(reported, testing::UnorderedElementsAreArray(c.told));
 }
 
 INSTANTIATE_TEST_SUITE_P(Rules, AuthorityTable, testing::ValuesIn(authority_cases::all()),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wrong samples of the sensors to a whole agent: each has a reason that the operator reads, and the robot
+// Wrong samples of the sensors to a complete agent: each has a reason that the operator reads, and the robot
 // stands where its surroundings or its attitude cannot be known. Once the sensors are right, it drives again.
 #include <gmock/gmock.h>
 
@@ -147,7 +147,7 @@ TEST_P(BadInputTest, IsReportedAndSurvived) {
     ASSERT_NE(reported, op1.notices.end());
     EXPECT_THAT(reported->text(), testing::HasSubstr(bad.text));
   } else {
-    EXPECT_THAT(op1.told(), testing::Not(testing::Contains("sensor_refused")));
+    EXPECT_THAT(op1.notice_codes(), testing::Not(testing::Contains("sensor_refused")));
   }
 
   bench.spoil = {};

@@ -37,7 +37,7 @@ class BehaviourTest : public testing::Test {
   std::string mode() const { return behaviour.view().mode; }
   std::vector<std::string> codes() const {
     std::vector<std::string> all;
-    for (const Notice& n : told) all.push_back(n.code);
+    for (const Notice& n : notices) all.push_back(n.code);
     return all;
   }
 
@@ -45,7 +45,7 @@ class BehaviourTest : public testing::Test {
   bool goal_free{true};
   Recorder nav{};
   Mux mux{nav};
-  std::vector<Notice> told{};
+  std::vector<Notice> notices{};
   std::vector<Pose2> set{};
   Pose2 at{};
   double stopping{};
@@ -62,13 +62,13 @@ class BehaviourTest : public testing::Test {
                          return {};
                        },
                        [this] { return stopping; }},
-                      {[this](const Notice& n) { told.push_back(n); }, [this] { ++changes; }}};
+                      {[this](const Notice& n) { notices.push_back(n); }, [this] { ++changes; }}};
   Time now{Duration{1h}};
   bool streaming{};
   Twist2 value{};
 };
 
-TEST_F(BehaviourTest, OnlyARobotInHoldIsToldWhereItIs) {
+TEST_F(BehaviourTest, PoseIsRefusedOutsideHold) {
   EXPECT_TRUE(behaviour.set_pose({3, 4, 1}, now));
   EXPECT_EQ(behaviour.set_pose({std::nan(""), 4, 1}, now).error().reason, Reason::out_of_range);
   EXPECT_EQ(behaviour.set_pose({3, 20'000, 1}, now).error().reason, Reason::out_of_range);
@@ -172,8 +172,8 @@ TEST_F(BehaviourTest, LettingGoOfACentredStickIsNoWarning) {
   run(1100ms);
   EXPECT_EQ(mode(), "hold");
   EXPECT_THAT(codes(), testing::ElementsAre("mode_changed"));
-  EXPECT_EQ(told.back().severity, Severity::info);
-  EXPECT_EQ(told.back().reason, Reason::joystick_stale);
+  EXPECT_EQ(notices.back().severity, Severity::info);
+  EXPECT_EQ(notices.back().reason, Reason::joystick_stale);
   EXPECT_EQ(behaviour.view().reason, Reason::none) << "the robot misses no stick";
 }
 
@@ -216,20 +216,20 @@ TEST_F(BehaviourTest, StopIsZeroWithinTheCallAndResetMovesNothing) {
   EXPECT_EQ(nav.last, Motion{Stand{}});
 }
 
-TEST_F(BehaviourTest, AGoalWithoutAHeightIsOnWhateverFloorIsThere) {
+TEST_F(BehaviourTest, AGoalWithoutAHeightIsOnTheFloor) {
   const Eigen::Vector3d no_height{5, 1, std::nan("")};
   ASSERT_TRUE(behaviour.request_goal(no_height, now));
   run(100ms);
   EXPECT_EQ(nav.last, (Motion{GoTo{no_height}}));
-  EXPECT_TRUE(behaviour.view().goal.allFinite()) << "operators are told a number";
-  const KeptBehaviour kept = behaviour.kept();
-  EXPECT_EQ(kept, behaviour.kept()) << "else it would be written again and again";
-  behaviour.restore(kept, false, true, false);
+  EXPECT_TRUE(behaviour.view().goal.allFinite()) << "operators get a number";
+  const StoredBehaviour stored = behaviour.stored();
+  EXPECT_EQ(stored, behaviour.stored()) << "else it would be written again and again";
+  behaviour.restore(stored, false, true, false);
   run(100ms);
   EXPECT_EQ(nav.last, (Motion{GoTo{no_height}})) << "also after a restart";
 }
 
-TEST_F(BehaviourTest, GoalIsKeptOverAStopAndGoesOnByRequest) {
+TEST_F(BehaviourTest, AGoalSurvivesAStopAndContinuesOnRequest) {
   ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
   run(100ms);
   EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1, 0}}}));
@@ -284,7 +284,7 @@ TEST_F(BehaviourTest, ArrivalEndsTheMotionNotTheMode) {
   EXPECT_EQ(behaviour.view().goal_state, GoalState::active);
 }
 
-TEST_F(BehaviourTest, WhoCannotGetThereSaysSoOnceAndGoesOnWhenThereIsAWay) {
+TEST_F(BehaviourTest, ReportsAnUnreachableGoalOnceAndContinuesWhenARouteExists) {
   ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
   run(100ms);
   behaviour.set_progress({.blocked = true, .unreachable = true});
@@ -330,7 +330,7 @@ TEST_F(BehaviourTest, SilentDriverPausesAutonomousModesAndEndsManualOnes) {
   facts.driver_alive = false;
   run(50ms);
   EXPECT_EQ(mode(), "hold");
-  EXPECT_EQ(told.back().reason, Reason::driver_silent);
+  EXPECT_EQ(notices.back().reason, Reason::driver_silent);
 }
 
 TEST_F(BehaviourTest, SmartJoystickGuidesTheLocalPlanner) {
@@ -340,12 +340,12 @@ TEST_F(BehaviourTest, SmartJoystickGuidesTheLocalPlanner) {
   EXPECT_EQ(nav.last, (Motion{Guidance{value}}));
 }
 
-TEST_F(BehaviourTest, WhatComesBackListensBeforeItGoesOn) {
-  KeptBehaviour kept{};
-  kept.mode = "waypoint";
-  kept.goal_known = true;
-  kept.goal = {3, 0, 0};
-  behaviour.restore(kept, false, true, true);
+TEST_F(BehaviourTest, ListensAfterARestartBeforeItContinues) {
+  StoredBehaviour stored{};
+  stored.mode = "waypoint";
+  stored.goal_known = true;
+  stored.goal = {3, 0, 0};
+  behaviour.restore(stored, false, true, true);
   facts.goal_known = true;
   run(500ms);
   EXPECT_EQ(mode(), "waypoint");
@@ -355,7 +355,7 @@ TEST_F(BehaviourTest, WhatComesBackListensBeforeItGoesOn) {
   behaviour.go_on(now);
   EXPECT_FALSE(behaviour.view().moving_allowed);
   behaviour.stop_changed(false, now);
-  behaviour.restore(kept, false, true, true);
+  behaviour.restore(stored, false, true, true);
   behaviour.go_on(now);
   EXPECT_TRUE(behaviour.view().moving_allowed);
 }
@@ -366,7 +366,7 @@ TEST_F(BehaviourTest, UnknownModesAreRefused) {
   EXPECT_EQ(behaviour.request_mode("", now).reason(), Reason::mode_unknown);
 }
 
-TEST_F(BehaviourTest, OptionsTellWhyNot) {
+TEST_F(BehaviourTest, OptionsStateWhyAModeIsUnavailable) {
   const auto option = [&](std::string_view wanted) {
     for (const contract::ModeOption& o : behaviour.options(now))
       if (o.mode == wanted) return o.reason;
@@ -379,20 +379,20 @@ TEST_F(BehaviourTest, OptionsTellWhyNot) {
   EXPECT_EQ(option("waypoint"), Reason::stopped);
 }
 
-TEST_F(BehaviourTest, IdleAndBlockedAreToldOnce) {
+TEST_F(BehaviourTest, IdleAndBlockedAreReportedOnce) {
   run(61s);
   EXPECT_THAT(codes(), testing::ElementsAre("idle"));
-  told.clear();
+  notices.clear();
   ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
   behaviour.set_progress({false, true});
   run(4s);
-  EXPECT_TRUE(told.empty());
+  EXPECT_TRUE(notices.empty());
   EXPECT_EQ(behaviour.view().goal_state, GoalState::blocked);
   run(10s);
   EXPECT_THAT(codes(), testing::ElementsAre("blocked"));
 }
 
-TEST_F(BehaviourTest, ChangesAreTold) {
+TEST_F(BehaviourTest, ChangesAreReported) {
   const int before = changes;
   run(1s);
   EXPECT_EQ(changes, before);
@@ -424,7 +424,7 @@ class AreasOfBehaviour : public BehaviourTest {
   std::optional<Behaviour> robot{};
 };
 
-TEST_F(AreasOfBehaviour, WhatIsMalformedOrForbidsThePlaceOfTheRobotIsRefused) {
+TEST_F(AreasOfBehaviour, AMalformedAreaAndOneThatForbidsTheRobotsPlaceAreRefused) {
   using enum nav::AreaKind;
   EXPECT_EQ(add("a", keep_in, {{1, 1}}), Reason::bad_argument);
   EXPECT_EQ(add("a", keep_out, {{-1, -1}, {1, 1}}), Reason::outside_area);
@@ -444,10 +444,10 @@ TEST_F(AreasOfBehaviour, AreReportedAndStored) {
   EXPECT_GT(changes, before);
   ASSERT_EQ(robot->view().areas.size(), 1U);
   EXPECT_EQ(robot->view().areas[0].name, "shaft");
-  const KeptBehaviour kept = robot->kept();
-  EXPECT_TRUE(kept.areas.find("shaft"));
+  const StoredBehaviour stored = robot->stored();
+  EXPECT_TRUE(stored.areas.find("shaft"));
   ASSERT_TRUE(robot->remove_area("shaft", now));
-  robot->restore(kept, false, true);
+  robot->restore(stored, false, true);
   ASSERT_EQ(robot->view().areas.size(), 1U);
   EXPECT_EQ(robot->view().areas[0].name, "shaft");
 }

@@ -140,7 +140,7 @@ TEST_F(BlockCulling, APlaceTakesTheSpaceOfAFewSubmapsHoweverOftenItIsSeen) {
   EXPECT_EQ(different(kLate), 0U);
 }
 
-TEST_F(BlockCulling, AStationThatJoinsLateGetsNoMoreThanWhatShowsTheSame) {
+TEST_F(BlockCulling, ALateStationGetsOnlyTheBlocksThatShow) {
   for (std::uint32_t submap = 0; submap < 12; ++submap) drive(submap);
   join(kLate);
   const std::size_t lacks = source.missing(kLate);
@@ -151,7 +151,7 @@ TEST_F(BlockCulling, AStationThatJoinsLateGetsNoMoreThanWhatShowsTheSame) {
   EXPECT_EQ(different(kLate), 0U);
 }
 
-TEST_F(BlockCulling, BothOfTwoStationsShowTheSameThoughOneJoinedLaterAndWasAway) {
+TEST_F(BlockCulling, TwoStationsShowTheSameAfterALateJoinAndAnAbsence) {
   join(kEarly);
   for (std::uint32_t submap = 0; submap < 3; ++submap) drive(submap);
   join(kLate);

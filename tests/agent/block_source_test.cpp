@@ -47,7 +47,7 @@ class BlockSourceTest : public testing::Test {
   };
 };
 
-TEST_F(BlockSourceTest, ASilentPeerHasWhatItAcknowledgedWhenAnotherOneGetsIt) {
+TEST_F(BlockSourceTest, ASilentPeerStillHasTheStateItAcknowledged) {
   source.join(kOne);
   for (int x = 0; x < 50; ++x) put(x);
   ASSERT_FALSE(next({kOne}, token).blocks.empty());
@@ -194,7 +194,7 @@ TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrSomeSeconds) {
   EXPECT_GT(next({kOne}, token).blocks.size(), 50U) << "they fill one";
 }
 
-TEST_F(BlockSourceTest, KnowsWhatEachPeerHas) {
+TEST_F(BlockSourceTest, TracksTheStateOfEachPeer) {
   source.join(kOne);
   source.join(kTwo);
   put(0);
@@ -329,9 +329,9 @@ class BlockChangesTest : public BlockSourceTest {
   perception::MapPiece last{};
 };
 
-TEST_F(BlockChangesTest, OfAStateThatArrivedOnlyChangesGoOut) { EXPECT_TRUE(is_change({kOne})); }
+TEST_F(BlockChangesTest, SendsOnlyChangesToAnAcknowledgedState) { EXPECT_TRUE(is_change({kOne})); }
 
-TEST_F(BlockChangesTest, AChangeGoesOnceMoreAndThenAsAWhole) {
+TEST_F(BlockChangesTest, ALostChangeIsRepeatedOnceThenTheBlockIsSentComplete) {
   EXPECT_TRUE(is_change({kOne}));
   lose(kOne);
   EXPECT_TRUE(is_change({kOne}));
@@ -354,7 +354,7 @@ TEST_F(BlockChangesTest, TheNextChangeWaitsForTheOneOnItsWay) {
   EXPECT_TRUE(is_change({kOne}));
 }
 
-TEST_F(BlockChangesTest, AStationThatHasNothingGetsWholeBlocks) {
+TEST_F(BlockChangesTest, ANewStationGetsCompleteBlocks) {
   source.join(kTwo);
   EXPECT_FALSE(is_change({kTwo, kOne}));
 }
@@ -406,7 +406,7 @@ TEST_F(GrowingTest, BlocksOfBothSizesShareAPiece) {
 TEST_F(GrowingTest, LargeVoxelsThatWereLostGoOnceMore) {
   EXPECT_EQ(arrives(3s, true), (Sent{60, 0}));
   EXPECT_EQ(arrives(1s, true), (Sent{60, 0}));
-  EXPECT_EQ(arrives(5s), Sent{}) << "a station that takes none is not to be kept from the small ones";
+  EXPECT_EQ(arrives(5s), Sent{}) << "a station that takes none must get the small ones";
   EXPECT_EQ(arrives(60s), (Sent{0, 60}));
 }
 
@@ -416,7 +416,7 @@ TEST_F(GrowingTest, SmallVoxelsThatWereLostGoAtOnce) {
   EXPECT_EQ(arrives(1s), (Sent{0, 60}));
 }
 
-TEST_F(GrowingTest, WhatGrowsInSmallVoxelsGoesInSmallOnes) {
+TEST_F(GrowingTest, ABlockSentInSmallVoxelsGrowsInSmallVoxels) {
   EXPECT_EQ(arrives(3s), (Sent{60, 0}));
   EXPECT_EQ(arrives(61s), (Sent{0, 60}));
   for (int x = 0; x < 60; ++x) put(x, 0x00ff);
@@ -510,7 +510,7 @@ TEST_F(CoarseFirstTest, AStationThatLacksMuchGetsLargeVoxelsOfAllFirst) {
   EXPECT_TRUE(many.complete(kOne, 0));
 }
 
-TEST_F(CoarseFirstTest, WhatIsKnownInSmallVoxelsNeverComesInLargeOnes) {
+TEST_F(CoarseFirstTest, ABlockSentInSmallVoxelsIsNeverSentInLargeOnes) {
   for (; many.missing(kOne) > 0; now += 10s)
     if (piece()) settle(true);
   ASSERT_TRUE(many.complete(kOne, 0));

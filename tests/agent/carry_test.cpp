@@ -168,7 +168,7 @@ TEST_F(CarryTest, TheMapOfARobotThatNeverReachesTheStationComesThroughAnother) {
   for (const auto& [key, submap] : robot.submaps) EXPECT_TRUE(submap.T_map_submap) << key.index;
 }
 
-TEST_F(CarryTest, WhatTheStationHasIsNotCarried) {
+TEST_F(CarryTest, AMapThatTheStationHasIsNotCarried) {
   drive(0, 12);
   reaches_base = true;
   pass(200s);
@@ -182,7 +182,7 @@ TEST_F(CarryTest, WhatTheStationHasIsNotCarried) {
   EXPECT_EQ(carried, 0U);
 }
 
-TEST_F(CarryTest, OnlyWhatDiffersIsCarriedAndOnlyOnce) {
+TEST_F(CarryTest, DifferingPartsAreCarriedOnce) {
   drive(0, 30);
   reaches_base = true;
   pass(200s);
@@ -246,7 +246,7 @@ TEST_F(CarryTest, AStationThatComesBackGoesFirstAndNothingGoesToBoth) {
   EXPECT_EQ(base.map_of(name), robots_map());
 }
 
-TEST_F(CarryTest, TheStationIsStartedAgainAndHasWhatWasCarried) {
+TEST_F(CarryTest, ARestartedStationStillHasTheCarriedMap) {
   drive(0, 12);
   meets_carrier = carrier_reaches_base = true;
   pass(90s);

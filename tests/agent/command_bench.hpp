@@ -17,7 +17,7 @@ namespace adit::agent {
 class CommandBench {
  public:
   struct Station {
-    Sender sender{};
+    MessageSender sender{};
     std::uint64_t seq{};
     bool up{true};
   };
@@ -38,11 +38,11 @@ class CommandBench {
   }
   /// Restarts the component with its stored state and another start id.
   void restart() {
-    const KeptAuthority kept = interface_->kept();
-    const std::vector<KeptAnswers> answers = interface_->kept_answers();
+    const StoredAuthority stored = interface_->stored();
+    const std::vector<StoredAnswers> answers = interface_->stored_answers();
     ++params_.epoch_start;
     interface_ = std::make_unique<CommandInterface>(params_, requests, outputs());
-    interface_->restore(kept, answers, now);
+    interface_->restore(stored, answers, now);
   }
   void kill(const std::string& op) { stations_.at(op).up = false; }
   void wait(Duration time) {

@@ -55,7 +55,7 @@ TEST(CommandInterface, OlderThanRememberedIsStale) {
   EXPECT_EQ(bench.send(first).reason, Reason::stale_sequence);
 }
 
-TEST(CommandInterface, WhatAStopOvertookDoesNotMoveTheRobot) {
+TEST(CommandInterface, ACommandOvertakenByAStopDoesNotMoveTheRobot) {
   CommandBench bench;
   bench.say("op1", "take");
   const Command late_reset = bench.command("op1", "reset");
@@ -97,7 +97,7 @@ TEST(CommandInterface, OtherProtocolIsRefusedButMayStop) {
   EXPECT_TRUE(bench.say("op1", "stop").accepted());
 }
 
-TEST(CommandInterface, HandoverTellsTheRobot) {
+TEST(CommandInterface, HandoverReachesTheBehaviour) {
   CommandBench bench;
   bench.say("op1", "take");
   bench.requests.calls.clear();
@@ -105,7 +105,7 @@ TEST(CommandInterface, HandoverTellsTheRobot) {
   EXPECT_THAT(bench.requests.calls, testing::ElementsAre("holder"));
 }
 
-TEST(CommandInterface, LapsedLockIsToldToAll) {
+TEST(CommandInterface, ALapsedLockIsReportedToAllStations) {
   CommandParams params{};
   params.lock_lease = 5s;
   CommandBench bench(params);
@@ -155,12 +155,12 @@ TEST(CommandInterface, SeventeenthStopperSharesALatch) {
   EXPECT_FALSE(bench.interface().stops().any());
 }
 
-TEST(CommandInterface, TwoThatClaimOneIdentityAreFoundOut) {
+TEST(CommandInterface, TwoParticipantsWithOneIdentityAreReported) {
   CommandBench bench;
   bench.say("op1", "take");
   bench.wait(1s);
   // A forger announces himself as a restarted op1, who is alive and goes on announcing himself.
-  const Sender forger = bench.station("forger:op1").sender;
+  const MessageSender forger = bench.station("forger:op1").sender;
   bench.interface().hear(forger, 1, bench.now);
   bench.notices.clear();
   bench.wait(2s);
@@ -173,11 +173,11 @@ TEST(CommandInterface, TwoThatClaimOneIdentityAreFoundOut) {
   EXPECT_TRUE(bench.say("op1", "lock").accepted());
 }
 
-TEST(CommandInterface, AForgerWhoAnnouncesTheHolderMovesNothingWhileHeLives) {
+TEST(CommandInterface, AForgedPresenceOfALivingHolderMovesNothing) {
   CommandBench bench;
   bench.say("op1", "take");
   bench.requests.calls.clear();
-  const Sender forger = bench.station("forger:op1").sender;
+  const MessageSender forger = bench.station("forger:op1").sender;
   int reported = 0;
   for (int i = 0; i < 40; ++i) {  // the holder's presence comes each second, the forger's ten times
     bench.now += 100ms;
@@ -194,7 +194,7 @@ TEST(CommandInterface, AForgerWhoAnnouncesTheHolderMovesNothingWhileHeLives) {
   EXPECT_TRUE(bench.say("op1", "lock").accepted());
 }
 
-TEST(CommandInterface, WhoClaimedAGuestsNameByACommandDoesNotGetTheHoldersPlace) {
+TEST(CommandInterface, AClaimByCommandDoesNotReplaceTheHolder) {
   CommandBench bench;
   bench.say("op1", "take");
   EXPECT_EQ(bench.say("forger:op2", "take").reason, Reason::identity_mismatch);
@@ -204,14 +204,14 @@ TEST(CommandInterface, WhoClaimedAGuestsNameByACommandDoesNotGetTheHoldersPlace)
   EXPECT_EQ(bench.say("forger:op2", "release").reason, Reason::identity_mismatch);
 }
 
-TEST(CommandInterface, AKilledStationIsBackWhenItsLastWordIsASignOfLifeOld) {
+TEST(CommandInterface, AKilledStationReturnsOnceItsLastSampleTimedOut) {
   CommandBench bench;
   bench.say("op1", "take");
   bench.wait(1s);
   bench.kill("op1");
   bench.notices.clear();
   // The new process announces itself a moment after the kill; its commands are repeated until they count.
-  const Sender again = bench.station("forger:op1").sender;
+  const MessageSender again = bench.station("forger:op1").sender;
   bench.now += 300ms;
   bench.interface().hear(again, 1, bench.now);
   EXPECT_EQ(bench.say("forger:op1", "mode hold").reason, Reason::identity_mismatch);
@@ -220,7 +220,7 @@ TEST(CommandInterface, AKilledStationIsBackWhenItsLastWordIsASignOfLifeOld) {
   EXPECT_TRUE(bench.notices.empty()) << "nobody is an intruder";
 }
 
-TEST(CommandInterface, AfterARestartTheHoldersPlaceIsNotForTheFirstToSpeak) {
+TEST(CommandInterface, ARestartDoesNotBindTheHolderToTheFirstSender) {
   CommandBench bench;
   bench.say("op1", "take");
   bench.restart();
@@ -233,11 +233,11 @@ TEST(CommandInterface, AfterARestartTheHoldersPlaceIsNotForTheFirstToSpeak) {
   EXPECT_TRUE(bench.say("op1", "lock").accepted()) << "and the real one needs no presence";
 }
 
-TEST(CommandInterface, ARestartWhileAForgerHasThePlaceDoesNotLeaveItToHim) {
+TEST(CommandInterface, ARestartDoesNotMakeAForgersBindingPermanent) {
   CommandBench bench;
   bench.say("op1", "take");
   bench.now += Binding::kHeartbeatTimeout;  // the holder's words are lost for a moment
-  const Sender forger = bench.station("forger:op1").sender;
+  const MessageSender forger = bench.station("forger:op1").sender;
   bench.interface().hear(forger, 1, bench.now);
   bench.restart();
   bench.now += Binding::kGrace;
@@ -246,10 +246,10 @@ TEST(CommandInterface, ARestartWhileAForgerHasThePlaceDoesNotLeaveItToHim) {
   EXPECT_TRUE(bench.say("op1", "lock").accepted());
 }
 
-TEST(CommandInterface, WhoWasFoundOutIsStillShutOutAfterARestart) {
+TEST(CommandInterface, ARejectedParticipantIsStillRejectedAfterARestart) {
   CommandBench bench;
   bench.say("op1", "take");
-  const Sender forger = bench.station("forger:op1").sender;
+  const MessageSender forger = bench.station("forger:op1").sender;
   bench.interface().hear(forger, 1, bench.now);
   bench.now += Binding::kGrace;
   bench.interface().hear(bench.station("op1").sender, 1, bench.now);  // both live: he is found out
@@ -264,7 +264,7 @@ TEST(CommandInterface, AStationRestartedTogetherWithTheRobotIsBackByItsPresence)
   bench.say("op1", "take");
   bench.kill("op1");
   bench.restart();
-  const Sender again = bench.station("forger:op1").sender;
+  const MessageSender again = bench.station("forger:op1").sender;
   bench.interface().hear(again, 1, bench.now);
   EXPECT_EQ(bench.say("forger:op1", "mode hold").reason, Reason::identity_mismatch);
   bench.now += Binding::kHeartbeatTimeout;
@@ -275,12 +275,12 @@ TEST(CommandInterface, AStationThatLeftIsBackAtOnce) {
   CommandBench bench;
   bench.say("op1", "take");
   bench.interface().departed(bench.station("op1").sender.participant);
-  const Sender again = bench.station("forger:op1").sender;
+  const MessageSender again = bench.station("forger:op1").sender;
   bench.interface().hear(again, 1, bench.now);
   EXPECT_TRUE(bench.say("forger:op1", "mode hold").accepted());
 }
 
-TEST(CommandInterface, NobodyTakesARobotInTheNameOfAGuestWhoIsThere) {
+TEST(CommandInterface, TakeInTheNameOfAPresentStationIsRefused) {
   CommandBench bench;
   bench.say("op1", "take");
   EXPECT_EQ(bench.say("forger:op2", "take").reason, Reason::identity_mismatch);
@@ -288,7 +288,7 @@ TEST(CommandInterface, NobodyTakesARobotInTheNameOfAGuestWhoIsThere) {
   EXPECT_TRUE(bench.say("op2", "take").accepted());
 }
 
-TEST(CommandInterface, WhatIsOlderAboutAuthorityDoesNotUndoWhatIsNewer) {
+TEST(CommandInterface, AnOlderAuthorityCommandDoesNotUndoANewerOne) {
   CommandBench bench;
   bench.say("op1", "take");
   const Command lock = bench.command("op1", "lock"), unlock = bench.command("op1", "unlock");
@@ -315,7 +315,7 @@ TEST(CommandInterface, StopOfAStationThatCameBackNeedsNoPresence) {
   EXPECT_EQ(bench.say("forger:op1", "mode hold").reason, Reason::identity_mismatch);
 }
 
-TEST(CommandInterface, RestartOfTheHoldersStationIsToldToTheRobot) {
+TEST(CommandInterface, ARestartOfTheHoldersStationReachesTheBehaviour) {
   CommandBench bench;
   bench.say("op1", "take");
   bench.requests.calls.clear();
@@ -379,8 +379,8 @@ TEST(CommandInterface, NoNumberOfStationsEvictsTheHolder) {
   bench.kill("op1");
   bench.wait(4s);
   for (int i = 0; i < 100; ++i) bench.say("s" + std::to_string(i), "take");
-  ASSERT_TRUE(bench.interface().kept().speaker);
-  EXPECT_EQ(bench.interface().kept().speaker->participant, bench.station("op1").sender.participant);
+  ASSERT_TRUE(bench.interface().stored().speaker);
+  EXPECT_EQ(bench.interface().stored().speaker->participant, bench.station("op1").sender.participant);
   EXPECT_EQ(bench.interface().stations().size(), StationTable::kCapacity);
   EXPECT_FALSE(bench.interface().handle(bench.stick("op1"), bench.now)) << "no refusal";
 }

@@ -32,7 +32,7 @@ class ConvoyTest : public testing::Test {
   }
   Convoy make(const std::string& robot) {
     return Convoy({robot, kLength, 2.0}, {peers, [this] { return std::optional(place); },
-                                          [this](const Notice& n) { told.push_back(n.code); }});
+                                          [this](const Notice& n) { reported.push_back(n.code); }});
   }
   /// A beacon of a robot arrives.
   void say(const std::string& robot, const std::optional<ConvoyPart>& part, double vx = 0.0) {
@@ -66,10 +66,10 @@ class ConvoyTest : public testing::Test {
   Time now{Duration{1h}};
   Eigen::Vector3d place{-2.0, 0, 0};
   std::uint32_t seq{};
-  std::vector<std::string> told{};
+  std::vector<std::string> reported{};
 };
 
-TEST_F(ConvoyTest, RefusesOrdersThatAreNone) {
+TEST_F(ConvoyTest, RefusesMalformedOrders) {
   Convoy convoy = make("r2");
   EXPECT_EQ(convoy.start(order({"r2"})).reason(), Reason::bad_argument) << "one robot";
   EXPECT_EQ(convoy.start(order({"r1", "r2", "r1"})).reason(), Reason::bad_argument) << "twice";
@@ -220,7 +220,7 @@ TEST_F(ConvoyTest, AnOrderMayArriveBeforeTheFirstBeacon) {
   EXPECT_EQ(convoy.hindrance(now), "");
 }
 
-TEST_F(ConvoyTest, NamesWhatKeepsItFromFollowing) {
+TEST_F(ConvoyTest, StatesWhyItDoesNotFollow) {
   Convoy convoy = make("r2");
   const ConvoyOrder mine = order({"r1", "r2"});
   ASSERT_TRUE(convoy.start(mine));
@@ -256,7 +256,7 @@ TEST_F(ConvoyTest, ARobotFarFromThePathDrivesToIt) {
 }
 
 // Restarts can leave two members with different paths: points of one never fit the other.
-TEST_F(ConvoyTest, APathThatIsContinuedNoMoreIsLearntAnew) {
+TEST_F(ConvoyTest, APathThatEndedIsReplacedByTheNextOne) {
   Convoy convoy = make("r2");
   const ConvoyOrder mine = order({"r1", "r2"});
   ASSERT_TRUE(convoy.start(mine));
@@ -273,7 +273,7 @@ TEST_F(ConvoyTest, APathThatIsContinuedNoMoreIsLearntAnew) {
   EXPECT_EQ(convoy.hindrance(now), "");
 }
 
-TEST_F(ConvoyTest, SkipsWhoLeftAndWaitsWhenTheLeaderLeft) {
+TEST_F(ConvoyTest, SkipsARobotThatLeftAndWaitsWhenTheLeaderLeft) {
   Convoy convoy = make("r3");
   const ConvoyOrder mine = order({"r1", "r2", "r3"});
   ASSERT_TRUE(convoy.start(mine));
@@ -318,7 +318,7 @@ TEST_F(ConvoyTest, ASilentPredecessorIsFollowedToTheEndOfThePathAndThenWaitedFor
   EXPECT_EQ(convoy.state(), Convoy::State::lost);
   ASSERT_TRUE(convoy.target());
   EXPECT_LE(convoy.speed_limit(true), 0.5);
-  EXPECT_THAT(told, ElementsAre("convoy_lost")) << "once";
+  EXPECT_THAT(reported, ElementsAre("convoy_lost")) << "once";
   EXPECT_TRUE(convoy.leader_known(now));
   pass(convoy, 10s);
   EXPECT_FALSE(convoy.leader_known(now)) << "the mode pauses";
@@ -373,7 +373,7 @@ TEST_F(ConvoyTest, TheLeaderWaitsForAMemberThatNeverSpoke) {
   pass(convoy, 2s);
   EXPECT_NEAR(convoy.speed_limit(false), 0.3, 1e-6);
   pass(convoy, 20s);
-  EXPECT_THAT(told, ElementsAre("convoy_split"));
+  EXPECT_THAT(reported, ElementsAre("convoy_split"));
 }
 
 TEST_F(ConvoyTest, ARestartedLeaderWhosePathNobodyKnowsBeginsAnotherOne) {
@@ -411,7 +411,7 @@ TEST_F(ConvoyTest, ARestartedLeaderGoesOnWithThePathThatItsFollowerKnows) {
   EXPECT_EQ(convoy.part(2)->first + convoy.part(2)->points.size(), 15u) << "two points more than r2 knows";
 }
 
-TEST_F(ConvoyTest, WhoLeftSaysSoAndMovesNoMore) {
+TEST_F(ConvoyTest, ARobotThatLeftAnnouncesThatAndStops) {
   Convoy convoy = make("r2");
   const ConvoyOrder mine = order({"r1", "r2"});
   EXPECT_EQ(convoy.leave().reason(), Reason::not_in_convoy);

@@ -42,7 +42,7 @@ TEST(Decider, FollowsTheTableWhenAConditionFails) {
     if (!c.holds(f)) return f;
     for (bool Facts::*fact :
          {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh, &Facts::stick_fresh,
-          &Facts::stick_kept, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free,
+          &Facts::stick_present, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free,
           &Facts::program_fresh, &Facts::map_fresh}) {
       f = kAllGood;
       f.*fact = false;
@@ -84,7 +84,7 @@ TEST(Decider, ModeDecidesAsTheConditionsOneByOne) {
     f.stopped = !holds();
     for (bool Facts::*fact :
          {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh, &Facts::stick_fresh,
-          &Facts::stick_kept, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free,
+          &Facts::stick_present, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free,
           &Facts::program_fresh, &Facts::map_fresh})
       f.*fact = holds();
     for (const std::string_view fact : kAllGood.also)

@@ -59,7 +59,7 @@ TEST_F(DirectoryTest, SortedByName) {
   EXPECT_EQ(last[2].name, "r3");
 }
 
-TEST_F(DirectoryTest, WhoFallsSilentIsGoneWithinThreeSecondsAndBackWithItsPresence) {
+TEST_F(DirectoryTest, ASilentPeerIsAbsentWithinThreeSecondsUntilItsNextPresence) {
   for (const bool station : {false, true}) {
     const std::string name = station ? "op1" : "r2";
     directory.on_capabilities(record(name, 1, station), now);
@@ -108,7 +108,7 @@ TEST_F(DirectoryTest, ReturnAfterAGoodbyeIsAtOnce) {
   EXPECT_EQ(last[0].participant, id(2));
 }
 
-TEST_F(DirectoryTest, NobodyTakesThePlaceOfOneThatIsThere) {
+TEST_F(DirectoryTest, APresentParticipantIsNotReplaced) {
   Peer real = record("r2", 1), forged = record("r2", 2), other = record("r2", 3);
   real.modes = {"hold"};
   other.id = of("other");
@@ -124,7 +124,7 @@ TEST_F(DirectoryTest, NobodyTakesThePlaceOfOneThatIsThere) {
   }
 }
 
-TEST_F(DirectoryTest, TheRealOneHasItsPlaceBackAfterAGapOfTheRadio) {
+TEST_F(DirectoryTest, TheOriginalIsRestoredAfterARadioGap) {
   Peer real = record("r2", 1);
   real.modes = {"hold"};
   directory.on_capabilities(real, now);
@@ -174,7 +174,7 @@ TEST_F(DirectoryTest, ANamesakeDoesNotTakeThePlaceOfASilentHolder) {
   EXPECT_EQ(last[0].participant, id(2));
 }
 
-TEST_F(DirectoryTest, BoundedAndPicky) {
+TEST_F(DirectoryTest, IsBoundedAndIgnoresInvalidNames) {
   directory.on_capabilities(record("no good", 1), now);
   EXPECT_EQ(published, 0);
   for (int i = 0; i < 200; ++i) directory.on_capabilities(record("r" + std::to_string(i), 1), now);

@@ -81,7 +81,7 @@ TEST(LaserScan, IsPointsAtTheLidarsHeight) {
       << "none of the scanner's range";
 }
 
-TEST(LaserScan, AnglesThatAreNoneAreRefused) {
+TEST(LaserScan, InvalidAnglesAreRefused) {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), 1e30f, 3.0f}) {
     auto scan = laser({1, 1, 1, 1});
     scan.angle_increment(bad);
@@ -113,7 +113,7 @@ std::vector<double> heard_by(const wire::Topic<T>& topic, VelocityType type,
   return heard;
 }
 
-TEST(Velocity, IsTheTypeThatTheDriverKnows) {
+TEST(Velocity, IsSentInTheDriversType) {
   using geometry_msgs::msg::Twist;
   using geometry_msgs::msg::TwistStamped;
   const std::function<double(const Twist&)> plain = [](const Twist& t) { return t.linear().x(); };
@@ -127,7 +127,7 @@ TEST(Velocity, IsTheTypeThatTheDriverKnows) {
   EXPECT_TRUE(heard_by(wire::topics::kCmdVel, VelocityType::twist_stamped, plain).empty());
 }
 
-TEST(Velocity, NobodyIsToldBeforeItIsMade) { VelocityWriter().write({1, 0, 0}); }
+TEST(Velocity, AWriterWithoutATopicWritesNothing) { VelocityWriter().write({1, 0, 0}); }
 
 /// A driver that publishes odometry, and an agent's side of the robot domain that counts what it believes.
 class OdometryTest : public testing::Test {
@@ -179,7 +179,7 @@ class OdometryTest : public testing::Test {
   std::vector<Time> times{};
 };
 
-TEST_F(OdometryTest, WhatNoBodyCanHaveIsAsGoodAsSilence) {
+TEST_F(OdometryTest, ImpossibleOdometryCountsAsSilence) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   EXPECT_EQ(publish(1.0, 1.0, 0.5), 1u);
   EXPECT_EQ(publish(999e3, 2.0, -0.5), 1u);
@@ -203,7 +203,7 @@ TEST_F(OdometryTest, ARevokedComponentDrivesAndHearsNothing) {
   EXPECT_EQ(velocities, 1);
 }
 
-TEST_F(OdometryTest, AProgramsVelocityIsHeardAndASecondWriterTold) {
+TEST_F(OdometryTest, ReportsAProgramsVelocityAndASecondWriter) {
   geometry_msgs::msg::Twist twist;
   twist.linear().x(0.3);
   auto outside = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::kExternalCmdVel).value();

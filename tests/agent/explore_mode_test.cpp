@@ -56,7 +56,7 @@ class ExploreModeTest : public testing::Test {
   Facts facts{.driver_alive = true, .localised = true, .terrain_fresh = true, .map_fresh = true};
   ExploreNavigation nav{};
   Mux mux{nav};
-  std::vector<Notice> told{};
+  std::vector<Notice> notices{};
   Pose2 at{5, 5, 0};
   bool heard{true};
   int blocks{}, begun{};
@@ -67,7 +67,7 @@ class ExploreModeTest : public testing::Test {
                       Decider::load(source_folder() + "/config/trees/robot.xml").value(),
                       mux,
                       inputs(),
-                      {[this](const Notice& n) { told.push_back(n); }, [] {}}};
+                      {[this](const Notice& n) { notices.push_back(n); }, [] {}}};
   Time now{Duration{1h}};
 };
 
@@ -85,8 +85,8 @@ TEST_F(ExploreModeTest, DrivesFromPlaceToPlaceAndHoldsWhenNothingIsLeft) {
   EXPECT_EQ(phase(), ExplorationPhase::done);
   EXPECT_EQ(behaviour.view().mode, "hold");
   EXPECT_EQ(nav.last, Motion{Stand{}});
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].code, "explored");
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0].code, "explored");
   EXPECT_EQ(begun, 1) << "only the first question begins an exploration";
 }
 
@@ -96,8 +96,8 @@ TEST_F(ExploreModeTest, WithoutAnyViewpointItIsNeverDone) {
   EXPECT_EQ(phase(), ExplorationPhase::ended);
   EXPECT_EQ(behaviour.view().exploration.reason, Reason::no_viewpoint);
   EXPECT_EQ(behaviour.view().mode, "hold");
-  ASSERT_EQ(told.size(), 1u);
-  EXPECT_EQ(told[0].reason, Reason::no_viewpoint);
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0].reason, Reason::no_viewpoint);
 }
 
 TEST_F(ExploreModeTest, DrivesHomeBeforeItHolds) {
@@ -164,15 +164,15 @@ TEST_F(ExploreModeTest, EndsWhenItsTimeIsOver) {
 TEST_F(ExploreModeTest, GoesOnAfterARestart) {
   ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::home}, now));
   see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
-  const KeptBehaviour kept = behaviour.kept();
-  behaviour.restore(kept, false, true);
+  const StoredBehaviour stored = behaviour.stored();
+  behaviour.restore(stored, false, true);
   see(nav::ExploreState::exploring, Eigen::Vector3d(9, 5, 0));
   EXPECT_EQ(target(), Eigen::Vector2d(9, 5));
   see(nav::ExploreState::done);
   EXPECT_EQ(target(), Eigen::Vector2d(1, 2));
   behaviour.set_progress({.arrived = true});
   run(100ms);
-  const KeptBehaviour done = behaviour.kept();
+  const StoredBehaviour done = behaviour.stored();
   behaviour.restore(done, false, true);
   run(1s);
   EXPECT_EQ(phase(), ExplorationPhase::done);
@@ -199,9 +199,9 @@ TEST_F(ExploreModeTest, TheAreaToExploreSurvivesARestartAndEndsTheExplorationWhe
       {.name = "west", .kind = nav::AreaKind::prefer, .corners = {{0, 0}, {10, 10}}}, now));
   ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::wait, .area = "west"}, now));
   see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
-  const KeptBehaviour kept = behaviour.kept();
+  const StoredBehaviour stored = behaviour.stored();
   ASSERT_TRUE(behaviour.request_explore({}, now));
-  behaviour.restore(kept, false, true);
+  behaviour.restore(stored, false, true);
   area.clear();
   run(1s);
   EXPECT_EQ(area, "west");

@@ -56,7 +56,7 @@ TEST_F(External, SilenceIsZeroAfterHalfASecond) {
   EXPECT_FALSE(external.fresh(now));
 }
 
-TEST_F(External, WhatIsNoNumberIsSilence) {
+TEST_F(External, ANonFiniteVelocityCountsAsSilence) {
   mux.enable("external", now);
   step(100ms);
   external.steer({std::numeric_limits<double>::quiet_NaN(), 0, 0}, now);
@@ -66,7 +66,7 @@ TEST_F(External, WhatIsNoNumberIsSilence) {
   EXPECT_FALSE(external.fresh(now));
 }
 
-TEST(ExternalTree, MayDoWithoutTheModeAndThenSaysSo) {
+TEST(ExternalTree, ATreeWithoutTheModeReportsItAsNotInstalled) {
   std::ifstream file(source_folder() + "/config/trees/robot.xml");
   std::stringstream text;
   text << file.rdbuf();
@@ -76,9 +76,9 @@ TEST(ExternalTree, MayDoWithoutTheModeAndThenSaysSo) {
   ASSERT_TRUE(decider) << decider.error().text;
   EXPECT_FALSE((*decider)->installed(*ModeTable::shipped().find("external")));
   EXPECT_TRUE((*decider)->installed(*ModeTable::shipped().find("waypoint")));
-  const auto whole = Decider::load(source_folder() + "/config/trees/robot.xml");
-  ASSERT_TRUE(whole) << whole.error().text;
-  EXPECT_TRUE((*whole)->installed(*ModeTable::shipped().find("external")));
+  const auto complete = Decider::load(source_folder() + "/config/trees/robot.xml");
+  ASSERT_TRUE(complete) << complete.error().text;
+  EXPECT_TRUE((*complete)->installed(*ModeTable::shipped().find("external")));
 }
 
 class Rival : public testing::Test {
@@ -88,15 +88,15 @@ class Rival : public testing::Test {
   RivalWatch watch{start};
 };
 
-TEST_F(Rival, IsToldAtItsThirdSampleAndNotAgainSoon) {
+TEST_F(Rival, IsReportedAtItsThirdSampleAndNotAgainSoon) {
   Time now = start + 10s;
   EXPECT_FALSE(watch.heard(kA, now));
   EXPECT_FALSE(watch.heard(kA, now += 50ms));
   EXPECT_TRUE(watch.heard(kA, now += 50ms));
   for (int i = 0; i < 200; ++i) EXPECT_FALSE(watch.heard(kA, now += 100ms));
-  int told = 0;
-  for (int i = 0; i < 200; ++i) told += watch.heard(kA, now += 100ms);
-  EXPECT_EQ(told, 1) << "once more after half a minute";
+  int reports = 0;
+  for (int i = 0; i < 200; ++i) reports += watch.heard(kA, now += 100ms);
+  EXPECT_EQ(reports, 1) << "once more after half a minute";
 }
 
 TEST_F(Rival, ASingleSampleIsAProbeByHand) {
@@ -104,7 +104,7 @@ TEST_F(Rival, ASingleSampleIsAProbeByHand) {
   for (int i = 0; i < 10; ++i) EXPECT_FALSE(watch.heard(kA, now += 2s));
 }
 
-TEST_F(Rival, TheParentsZerosAtTheStartAreNone) {
+TEST_F(Rival, TheParentsZerosAtTheStartAreNoRival) {
   Time now = start;
   for (int i = 0; i < 50; ++i) EXPECT_FALSE(watch.heard(kB, now += 50ms));
 }

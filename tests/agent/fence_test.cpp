@@ -35,7 +35,7 @@ class FenceTest : public testing::Test {
 
 TEST_F(FenceTest, IsEmptyWithoutAreas) {
   EXPECT_TRUE(fence.empty());
-  EXPECT_TRUE(fence.is_kept());
+  EXPECT_TRUE(fence.is_obeyed());
   EXPECT_TRUE(fence.border(frames, 5).empty());
 }
 
@@ -56,14 +56,14 @@ TEST_F(FenceTest, BindsUntilTheMiddleOfTheBodyIsOutsideAndAgainOnceAllOfItIsWith
   EXPECT_TRUE(binds("west"));
   at(4.9);
   EXPECT_TRUE(binds("west")) << "the front reaches over";
-  EXPECT_FALSE(fence.is_kept());
+  EXPECT_FALSE(fence.is_obeyed());
   EXPECT_FALSE(fence.border(frames, 5).empty());
   at(5.1);
   EXPECT_FALSE(binds("west")) << "driven out by hand";
   EXPECT_TRUE(fence.border(frames, 5).empty()) << "nothing keeps it from coming back";
   at(4.65);
   EXPECT_FALSE(binds("west")) << "within, but nearer than the margin";
-  EXPECT_TRUE(fence.is_kept());
+  EXPECT_TRUE(fence.is_obeyed());
   at(4.5);
   EXPECT_TRUE(binds("west"));
 }
@@ -80,7 +80,7 @@ TEST_F(FenceTest, AreasToKeepOutOfBindOneByOne) {
   areas.remove("far");
   at(6);
   EXPECT_TRUE(fence.empty());
-  EXPECT_TRUE(fence.is_kept());
+  EXPECT_TRUE(fence.is_obeyed());
 }
 
 TEST_F(FenceTest, ACorrectionOfTheMapBindsNothingThatDidNot) {

@@ -128,11 +128,11 @@ TEST_F(Found, AnotherParticipantCannotSayWhatAStationHas) {
   EXPECT_GE(desks[0].heard.size(), 1u);
 }
 
-TEST_F(Found, WhatIsNoneIsTold) {
+TEST_F(Found, AnInvalidFindingIsReported) {
   findings::Finding f;
   bench->agent().report(f);
   bench->run(1s);
-  EXPECT_THAT(op1->told(), Contains("finding_refused"));
+  EXPECT_THAT(op1->notice_codes(), Contains("finding_refused"));
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST_F(FramesTest, StampsOutsideOfTheHistoryAreErrors) {
   EXPECT_TRUE(std::isnan(x_at(1.5))) << "nobody knows where it was in a gap of 0.9 s";
 }
 
-TEST_F(FramesTest, SamplesThatWereOvertakenEnterTheHistoryAlone) {
+TEST_F(FramesTest, OvertakenSamplesEnterOnlyTheHistory) {
   drive(0, 1);
   ASSERT_TRUE(sample(1.3));
   EXPECT_NEAR(x_at(1.2), 1.2, 1e-9);
@@ -104,7 +104,7 @@ TEST_F(FramesTest, ACorrectionMovesTheMapAlone) {
   EXPECT_NEAR((frames.T_map_odom() * frames.to_odom(goal) - goal).norm(), 0, 1e-9);
 }
 
-TEST_F(FramesTest, CorrectionsThatMeanNothingAreRefused) {
+TEST_F(FramesTest, InvalidCorrectionsAreRefused) {
   drive(0, 2);
   ASSERT_EQ(correct({11, 20, 0}), Reason::none);
   MapFrame corrected = frames.map_frame();
@@ -161,9 +161,9 @@ TEST_F(FramesTest, ARestartLetsNoOlderCorrectionPass) {
   const MapFrame first = frames.map_frame();
   frames.set_pose({0, 0, 0});
   const MapFrame last = frames.map_frame();
-  const StoredFrames kept = frames.stored();
+  const StoredFrames stored = frames.stored();
   frames = Frames(Pose2{10, 20, 0}, wheeled(), 3.0);
-  frames.restore(kept);
+  frames.restore(stored);
   EXPECT_EQ(correct({11, 20, 0}, first), Reason::sample_stale);
   EXPECT_EQ(correct({11, 20, 0}, last), Reason::sample_stale)
       << "the instance that it was computed for ended";
@@ -202,9 +202,9 @@ TEST_F(FramesTest, ARestartRestoresTheCorrection) {
 }
 
 TEST_F(FramesTest, AHeightThatWasNotStoredIsTheStartsHeight) {
-  StoredFrames kept = frames.stored();
-  kept.height.reset();
-  frames.restore(kept);
+  StoredFrames stored = frames.stored();
+  stored.height.reset();
+  frames.restore(stored);
   EXPECT_EQ(frames.height(), 3.0);
 }
 

@@ -41,9 +41,9 @@ TEST_F(KeyframeStoreTest, IsBoundedAndKeepsTheNewest) {
   drive(*frames, 0, 100);
   frames = made();
   drive(*frames, 101, 110);
-  const auto kept = made()->of(0);
-  ASSERT_EQ(kept.size(), KeyframeStore::kMax);
-  for (const auto& each : kept) EXPECT_GT(each.T_odom_base.position.x(), 45.0);
+  const auto stored = made()->of(0);
+  ASSERT_EQ(stored.size(), KeyframeStore::kMax);
+  for (const auto& each : stored) EXPECT_GT(each.T_odom_base.position.x(), 45.0);
 }
 
 TEST_F(KeyframeStoreTest, ReplacesWhatItSawAtTheSamePlace) {

@@ -94,7 +94,7 @@ TEST_F(LinkRate, AStickInUseHoldsFiveStatesASecond) {
   EXPECT_LT(rate(5s), 3.0);
 }
 
-TEST_F(LinkRate, WhatIsSaidForLateComersIsStretchedNotStopped) {
+TEST_F(LinkRate, PeriodicStatusIsStretchedNotStopped) {
   link({.bandwidth = 12e3, .latency = 0.02});
   bench.run(20s);
   int reports = 0;

@@ -142,7 +142,7 @@ TEST_F(LiveAgent, RestartsLeaveNothingBehind) {
   EXPECT_EQ(shared_files(before), 0) << "who is killed leaves them behind";
 }
 
-TEST_F(LiveAgent, ATooSmallMemoryLimitNamesTheLeastAndThatWorks) {
+TEST_F(LiveAgent, ATooSmallMemoryLimitNamesTheMinimumWhichWorks) {
   const auto refused = live::run(command({"--memory-limit", "15"}), folder.environment());
   EXPECT_EQ(refused.exit_code, 2) << refused.err;
   const std::size_t at = refused.err.find("at least ");

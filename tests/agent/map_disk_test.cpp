@@ -196,7 +196,7 @@ TEST(MapDisk, TheOldestSubmapsGoWhenTheMapTakesTooMuchSpace) {
   EXPECT_GT(bench.keeper->submaps(), 0U);
 }
 
-TEST(MapDisk, WhatIsLeftMovesWithACorrectionAndHasAPlaceThoughTheFirstSubmapWasDropped) {
+TEST(MapDisk, RemainingSubmapsFollowACorrectionAfterTheFirstOneWasDropped) {
   MapBench bench("r1", {.max_bytes = 3000});
   MapBench::Station early;
   for (double x = 0; x < 150; x += 15) {

@@ -12,13 +12,13 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(DataLimit, WhatWasReservedAndNeverUsedDoesNotCount) {
+TEST(DataLimit, UnusedReservedMemoryDoesNotCount) {
   const auto limit = data_limit(60.0, {.touched = 20.0, .reserved = 150.0});
   ASSERT_TRUE(limit) << limit.error().text;
   EXPECT_DOUBLE_EQ(*limit, 190.0);  // 40 MB more than now
 }
 
-TEST(DataLimit, TooLittleNamesTheLeastThatWorks) {
+TEST(DataLimit, TooLittleNamesTheMinimumThatWorks) {
   const auto limit = data_limit(25.0, {.touched = 20.2, .reserved = 150.0});
   ASSERT_EQ(limit.reason(), Reason::out_of_range);
   EXPECT_THAT(limit.error().text, HasSubstr("25 MB is too little, 21 MB are in use"));
@@ -47,7 +47,7 @@ void* reserve(std::size_t megabytes) {
   std::_Exit(0);
 }
 
-TEST(MemoryLimit, WhatGoesBeyondFailsAndWhatIsBelowDoesNot) {
+TEST(MemoryLimit, AllocationsBeyondTheLimitFail) {
   EXPECT_EXIT(within_the_limit(), testing::ExitedWithCode(0), "");
 }
 

@@ -32,7 +32,7 @@ void stop(Facts& f) { f.stopped = true; }
 void no_driver(Facts& f) { f.driver_alive = false; }
 void lost(Facts& f) { f.localised = false; }
 void blind(Facts& f) { f.terrain_fresh = false; }
-void no_stick(Facts& f) { f.stick_fresh = f.stick_kept = f.stick_centred = false; }
+void no_stick(Facts& f) { f.stick_fresh = f.stick_present = f.stick_centred = false; }
 void pushed(Facts& f) { f.stick_centred = false; }
 void no_goal(Facts& f) { f.goal_known = false; }
 void silent(Facts& f) { f.program_fresh = false; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The collision monitor in a whole agent: what manual mode may do near things and with a dead lidar.
+// The collision monitor in a complete agent: what manual mode may do near things and with a dead lidar.
 #include <gmock/gmock.h>
 
 #include "tests/agent/agent_bench.hpp"
@@ -39,13 +39,13 @@ TEST_P(MonitorTest, ManualWithADeadLidarDrivesSlowlyAndTheOperatorIsWarned) {
   enter("manual");
   bench.stream(op1, 0.8, 500ms);
   EXPECT_NEAR(bench.command.vx, 0.8, 1e-6);
-  EXPECT_THAT(op1.told(), Not(Contains("lidar_silent")));
+  EXPECT_THAT(op1.notice_codes(), Not(Contains("lidar_silent")));
   bench.lidar_alive = false;
   bench.stream(op1, 0.8, 2s);
   EXPECT_NEAR(bench.command.vx, 0.3, 1e-6);
   EXPECT_EQ(op1.behaviour.mode(), "manual");
-  const auto told = op1.told();
-  EXPECT_EQ(std::count(told.begin(), told.end(), "lidar_silent"), 1) << "once";
+  const auto codes = op1.notice_codes();
+  EXPECT_EQ(std::count(codes.begin(), codes.end(), "lidar_silent"), 1) << "once";
   bench.lidar_alive = true;
   bench.stream(op1, 0.8, 500ms);
   EXPECT_NEAR(bench.command.vx, 0.8, 1e-6);
@@ -56,7 +56,7 @@ TEST_P(MonitorTest, ManualBeforeAWall) {
   bench.run(300ms);
   enter("manual");
   bench.stream(op1, 1.0, GetParam() ? 6s : 3500ms);
-  EXPECT_THAT(op1.told(), Contains("obstacle_near"));
+  EXPECT_THAT(op1.notice_codes(), Contains("obstacle_near"));
   if (GetParam()) {
     EXPECT_EQ(bench.command, Twist2{}) << "the platform's file asked for it";
     EXPECT_LT(bench.pose.x + Platform{}.length / 2, 2.5);
@@ -72,13 +72,13 @@ TEST_P(MonitorTest, SmartJoystickWithADeadLidarStops) {
   bench.lidar_alive = false;
   bench.stream(op1, 0.8, 800ms);
   EXPECT_EQ(bench.command, Twist2{});
-  EXPECT_THAT(op1.told(), Not(Contains("lidar_silent"))) << "the mode says why itself";
+  EXPECT_THAT(op1.notice_codes(), Not(Contains("lidar_silent"))) << "the mode says why itself";
 }
 
 TEST_P(MonitorTest, ScansOfAnUnknownFrameAreRefusedByName) {
   bench.lidar_frame = "velodyne";
   bench.run(2s);
-  EXPECT_THAT(op1.told(), Contains("sensor_refused"));
+  EXPECT_THAT(op1.notice_codes(), Contains("sensor_refused"));
   const auto& heard = op1.notices;
   const auto refused =
       std::find_if(heard.begin(), heard.end(), [](const auto& n) { return n.code() == "sensor_refused"; });

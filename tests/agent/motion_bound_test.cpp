@@ -39,7 +39,7 @@ class OdometryJump : public testing::Test {
   Time newest{};
 };
 
-TEST_F(OdometryJump, NobodyJumpsByDriving) {
+TEST_F(OdometryJump, DrivingIsNoJump) {
   for (const bool with : {true, false}) {
     stamps = with;
     for (const Duration period : {5ms, 20ms, 100ms, 400ms, 1000ms}) {
@@ -136,12 +136,12 @@ TEST_F(OdometryJump, ThePoseThatIsSetIsInTheMapAlone) {
   EXPECT_EQ(where.odom_epoch(), 0u);
 }
 
-TEST_F(OdometryJump, ARestartComparesWithThePlaceThatWasKept) {
+TEST_F(OdometryJump, ARestartComparesWithTheStoredPlace) {
   ASSERT_EQ(drive(1.0, 0.0, 5s, 20ms), 0);
-  const StoredFrames kept = where.stored();
+  const StoredFrames stored = where.stored();
   const auto back_at = [&](const Pose2& odom, Duration later) {
     Frames again(Pose2{}, wheeled());
-    again.restore(kept);
+    again.restore(stored);
     return again.update(Pose3::level(odom, 0), {}, 1, Time(100s + measured + later));
   };
   EXPECT_TRUE(back_at(pose, 500ms));

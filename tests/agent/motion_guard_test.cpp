@@ -61,7 +61,7 @@ TEST_F(Guard, EveryLastingConditionIsAskedInEveryTick) {
   const auto fails = [](const Condition& c) {
     for (bool Facts::*fact :
          {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh, &Facts::stick_fresh,
-          &Facts::stick_kept, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free,
+          &Facts::stick_present, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free,
           &Facts::program_fresh, &Facts::map_fresh}) {
       Facts f = kAllConditions;
       f.*fact = false;

@@ -78,7 +78,7 @@ TEST_F(MuxTest, EnablingTheSameSourceAgainIsNoChange) {
   EXPECT_EQ(last(), Motion{kSlow});
 }
 
-TEST_F(MuxTest, WhatWasSaidBeforeEnablingMovesNothing) {
+TEST_F(MuxTest, OutputBeforeEnablingMovesNothing) {
   b.write(kFast, now);
   mux.enable("b", now);
   now += 60ms;

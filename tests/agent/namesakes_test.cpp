@@ -126,8 +126,8 @@ TEST_F(NamesakesTest, TheOneThatAStationHeardFirstStaysAndTheOtherRefuses) {
   EXPECT_EQ(op2.behaviour.mode(), "hold");
   EXPECT_EQ(static_cast<Reason>(op2.behaviour.reason()), Reason::name_taken);
   for (const AgentBench::Operator* op : {&op1, &op2}) {
-    const auto told = op->told();
-    EXPECT_EQ(std::count(told.begin(), told.end(), "name_taken"), 2) << op->name;
+    const auto codes = op->notice_codes();
+    EXPECT_EQ(std::count(codes.begin(), codes.end(), "name_taken"), 2) << op->name;
   }
 }
 
@@ -176,7 +176,7 @@ TEST_F(NamesakesTest, AStrangerCannotPutAHeldRobotOutOfWork) {
   EXPECT_EQ(op1.behaviour.mode(), "waypoint");
   EXPECT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 40.0, 0.0), Reason::none);
   EXPECT_EQ(bench.ask(op1, radio::CMD_MODE, "hold"), Reason::none);
-  EXPECT_THAT(op2.told(), Contains("name_taken"));
+  EXPECT_THAT(op2.notice_codes(), Contains("name_taken"));
 }
 
 TEST_F(NamesakesTest, ARestartIsNoNamesake) {
@@ -186,10 +186,10 @@ TEST_F(NamesakesTest, ARestartIsNoNamesake) {
   bench.start_agent();
   bench.run(6s);
   EXPECT_EQ(bench.ask(op1, radio::CMD_TAKE), Reason::none);
-  EXPECT_THAT(op1.told(), Not(Contains("name_taken")));
+  EXPECT_THAT(op1.notice_codes(), Not(Contains("name_taken")));
 }
 
-TEST_F(NamesakesTest, WhoGaveWayIsInServiceWhenTheOtherHasLeft) {
+TEST_F(NamesakesTest, ReturnsToServiceWhenTheOtherHasLeft) {
   bench.run(6s);
   Twin twin(bench);
   op1.follows = op2.follows = twin.participant();

@@ -10,23 +10,23 @@ namespace adit::agent {
 namespace {
 
 /// A router whose answers the test gives.
-class ToldRouter final : public Component {
+class ScriptedRouter final : public Component {
  public:
-  explicit ToldRouter(Executor& strand) : Component("router", strand) { EXPECT_TRUE(start()); }
-  ~ToldRouter() override { stop(); }
+  explicit ScriptedRouter(Executor& strand) : Component("router", strand) { EXPECT_TRUE(start()); }
+  ~ScriptedRouter() override { stop(); }
   Result<void> on_start() override {
     offer(services.step, [this](const auto& job, const Reply<nav::RouteStep>& reply) {
       if (!answers) return;
       last = job;
-      reply(job->goal && tells ? *tells
-                               : nav::RouteStep{.target = job->goal.value_or(Eigen::Vector3d{0, 0, 0})});
+      reply(job->goal && answer ? *answer
+                                : nav::RouteStep{.target = job->goal.value_or(Eigen::Vector3d{0, 0, 0})});
     });
     return {};
   }
 
   RouteServices services{};
   bool answers{true};
-  std::optional<nav::RouteStep> tells{};  ///< Empty: straight to the goal.
+  std::optional<nav::RouteStep> answer{};  ///< Empty: straight to the goal.
   std::shared_ptr<const RouteJob> last{};
 };
 
@@ -91,7 +91,7 @@ class NavigationTest : public testing::Test {
   Progress progress{};
   PlanService plans{"planner"};
   Planner planner{{}, *strand, {}, plans};
-  ToldRouter router{*strand};
+  ScriptedRouter router{*strand};
   Navigation navigation{
       NavigationParams{},
       *strand,
@@ -112,7 +112,7 @@ TEST_F(NavigationTest, DrivesRoundWhatStandsInItsWay) {
   EXPECT_GT(velocity.vx, 0.3);
 }
 
-TEST_F(NavigationTest, WhoIsHeldByTheBrakingCheckIsBlockedAndSaysSo) {
+TEST_F(NavigationTest, ARobotHeldByTheBrakingCheckReportsBlocked) {
   for (int i = 0; i < 12; ++i) cycle(planned, actual);
   EXPECT_TRUE(velocity.zero());
   EXPECT_FALSE(progress.blocked) << "not yet: it may be over in a moment";
@@ -132,31 +132,31 @@ TEST_F(NavigationTest, AnotherGoalBeginsUnheld) {
   EXPECT_FALSE(progress.blocked);
 }
 
-TEST_F(NavigationTest, IsLedByTheRouteNotByTheGoal) {
-  router.tells = nav::RouteStep{nav::RouteStep::State::along, {-3, 3, 0}, false};
+TEST_F(NavigationTest, FollowsTheRouteNotTheGoal) {
+  router.answer = nav::RouteStep{nav::RouteStep::State::along, {-3, 3, 0}, false};
   go({6, 0});
   for (int i = 0; i < 10; ++i) cycle({}, {});
   EXPECT_GT(velocity.wz, 0.1) << "the route leads back and to the left";
 }
 
 TEST_F(NavigationTest, APlaceOnTheWayIsNoArrival) {
-  router.tells = nav::RouteStep{nav::RouteStep::State::along, {0.05, 0, 0}, false};
+  router.answer = nav::RouteStep{nav::RouteStep::State::along, {0.05, 0, 0}, false};
   go({6, 0});
   for (int i = 0; i < 5; ++i) cycle({}, {});
   EXPECT_FALSE(progress.arrived);
-  router.tells->last = true;
+  router.answer->last = true;
   for (int i = 0; i < 5; ++i) cycle({}, {});
   EXPECT_TRUE(progress.arrived);
 }
 
-TEST_F(NavigationTest, WhatCannotBeReachedIsStoodBeforeAndTold) {
+TEST_F(NavigationTest, StopsBeforeAnUnreachableGoalAndReportsIt) {
   for (int i = 0; i < 10; ++i) cycle({}, {});
   ASSERT_GT(velocity.vx, 0.3);
-  router.tells = nav::RouteStep{nav::RouteStep::State::unreachable, {6, 0, 0}, true};
+  router.answer = nav::RouteStep{nav::RouteStep::State::unreachable, {6, 0, 0}, true};
   for (int i = 0; i < 3; ++i) cycle({}, {});
   EXPECT_TRUE(velocity.zero());
   EXPECT_TRUE(progress.blocked && progress.unreachable);
-  router.tells.reset();
+  router.answer.reset();
   for (int i = 0; i < 10; ++i) cycle({}, {});
   EXPECT_FALSE(progress.unreachable) << "a way was found";
   EXPECT_GT(velocity.vx, 0.3);
@@ -174,13 +174,13 @@ TEST_F(NavigationTest, WaitsForARouteUntilTheRouterAnswers) {
 }
 
 TEST_F(NavigationTest, ARouteThatIsTooLongIsNotDriven) {
-  router.tells = nav::RouteStep{
+  router.answer = nav::RouteStep{
       .state = nav::RouteStep::State::along, .target = {3, -2, 0}, .last = false, .length = 9.0};
   goal_writer.write(GoTo{{6, 0, 0}, 8.0}, strand->now());
   for (int i = 0; i < 30; ++i) cycle({}, {});
   EXPECT_TRUE(velocity.zero());
   EXPECT_TRUE(progress.unreachable);
-  router.tells->length = 7.0;
+  router.answer->length = 7.0;
   for (int i = 0; i < 30; ++i) cycle({}, {});
   EXPECT_GT(velocity.vx, 0.3) << "it became shorter";
 }
@@ -246,7 +246,7 @@ TEST_F(NavigationTest, APlanOfTheOldFrameIsNotFollowed) {
   EXPECT_TRUE(navigation.goal_free(frames.T_map_base() * Eigen::Vector2d(2, 0)));
 }
 
-TEST_F(NavigationTest, TheRouterIsToldOfWhatIsBlocked) {
+TEST_F(NavigationTest, ReportsABlockedRouteToTheRouter) {
   for (int i = 0; i < 25; ++i) cycle(planned, actual);
   ASSERT_TRUE(progress.blocked);
   EXPECT_TRUE(router.last->blocked);

@@ -129,7 +129,7 @@ TEST_F(OdometryReset, AfterASlowDriveIsComparedWithAPlaceOfTheLastSecond) {
   EXPECT_THAT(notice(*op2), HasSubstr("jumped"));
 }
 
-TEST_F(OdometryReset, WithoutOneTheGoalGoesOnAfterARestart) {
+TEST_F(OdometryReset, WithoutAResetTheGoalContinuesAfterARestart) {
   crash();
   bench->start_agent();
   bench->run(5s);
@@ -138,7 +138,7 @@ TEST_F(OdometryReset, WithoutOneTheGoalGoesOnAfterARestart) {
   EXPECT_EQ(notice(*op1), "");
 }
 
-TEST_F(OdometryReset, ASilentDriverThatComesBackWhereItStoodIsNone) {
+TEST_F(OdometryReset, ADriverThatReturnsAtItsPlaceIsNoReset) {
   bench->driver_alive = false;
   bench->run(10s);
   bench->driver_alive = true;
@@ -147,15 +147,15 @@ TEST_F(OdometryReset, ASilentDriverThatComesBackWhereItStoodIsNone) {
   EXPECT_EQ(notice(*op1), "");
 }
 
-TEST_F(OdometryReset, TwoDriversThatWriteInTurnAreToldOnceInAWhile) {
+TEST_F(OdometryReset, AlternatingDriversAreReportedOnceInFiveSeconds) {
   for (int i = 0; i < 100; ++i) {
     bench->pose.x += i % 2 == 0 ? 5 : -5;
     bench->run(20ms);
   }
-  int told = 0;
+  int reports = 0;
   for (const auto& n : op1->notices)
-    if (n.code() == "odometry_jumped") ++told;
-  EXPECT_EQ(told, 1);
+    if (n.code() == "odometry_jumped") ++reports;
+  EXPECT_EQ(reports, 1);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ class PeerTableTest : public testing::Test {
     if (station) p.kind = contract::AgentKind::station;
     return p;
   }
-  static Sender sender(const std::string& name, int number) {
+  static MessageSender sender(const std::string& name, int number) {
     return {name, id_of(name), participant(number)};
   }
   const Peer* find(const std::string& name) const { return peers.find(name); }
@@ -171,7 +171,7 @@ TEST_F(PeerTableTest, ADescriptionByAnotherParticipantDoesNotTakeAStationThatCom
   EXPECT_EQ(find("op1")->id, id_of("op1"));
 }
 
-TEST_F(PeerTableTest, WhoHadTheHoldersNameWhileItWasAwayDoesNotKeepIt) {
+TEST_F(PeerTableTest, AnAbsentHolderGetsItsNameBack) {
   peers.set_holder("op1", id_of("op1"));
   Peer other = peer("op1", 2, true);
   other.id = id_of("other");
@@ -223,7 +223,7 @@ TEST_F(PeerTableTest, AStationWithTheNameOfASilentHolderIsNotEntered) {
   peers.set_holder("op1", id_of("op1"));
   directory.tick(now + 10s);
   ASSERT_FALSE(find("op1")->present);
-  const Sender namesake{"op1", id_of("other"), participant(2)};
+  const MessageSender namesake{"op1", id_of("other"), participant(2)};
   peers.accept_station(namesake, now + 10s);
   ASSERT_NE(peers.holder(), nullptr);
   EXPECT_EQ(peers.holder()->participant, participant(1));

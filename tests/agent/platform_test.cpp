@@ -52,7 +52,7 @@ TEST(PlatformSwap, ARobotThatCarriesMapsSaysSo) {
   EXPECT_THAT(op.capabilities.services(), testing::Contains("carry_map"));
 }
 
-TEST(PlatformSwap, WhatDoesNotFitTheDriveIsToldAtTheStart) {
+TEST(PlatformSwap, APlatformThatDoesNotFitTheDriveIsReportedAtTheStart) {
   const auto start = [](const auto& change) {
     AgentParams params{};
     params.name = "r1";

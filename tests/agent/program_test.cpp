@@ -53,7 +53,7 @@ TEST(RobotConfig, AMissingTreeIsLeftToTheAgent) {
   EXPECT_EQ(config->tree, "oak.xml");
 }
 
-TEST(RobotConfig, StateIsKeptWhereItSaysOrInTheUsualPlace) {
+TEST(RobotConfig, StateIsStoredInTheNamedOrTheDefaultFolder) {
   const live::Folder folder;
   const auto state = [&](const std::string& line) {
     return state_folder(
@@ -185,7 +185,7 @@ TEST_F(ConsoleTest, OneAgentPerName) {
   EXPECT_TRUE(Console::open("r2", [](const auto&, auto) {}));
 }
 
-TEST_F(ConsoleTest, NobodyThereAndOpenFoldersAreErrors) {
+TEST_F(ConsoleTest, AMissingAgentAndAnOpenFolderAreErrors) {
   EXPECT_EQ(ask_console("r9", "status").reason(), Reason::no_answer);
   ::chmod((folder.path() + "/adit").c_str(), 0755);
   EXPECT_EQ(ask_console("r9", "status").reason(), Reason::cannot_write);
@@ -242,7 +242,7 @@ TEST_F(ParentTest, AChildThatPulsesIsLeftAlone) {
   EXPECT_EQ(parent.run(), 0);
 }
 
-TEST(Service, TellsWhoListens) {
+TEST(Service, NotifiesTheServiceManager) {
   const live::Folder folder;
   const std::string path = folder.path() + "/notify";
   const int fd = ::socket(AF_UNIX, SOCK_DGRAM, 0);
@@ -257,7 +257,7 @@ TEST(Service, TellsWhoListens) {
   ::close(fd);
 }
 
-TEST(Service, NobodyListensIsNoError) {
+TEST(Service, AMissingServiceManagerIsNoError) {
   EXPECT_FALSE(Service("").notify("READY=1"));
   EXPECT_FALSE(Service("/nowhere/at/all").notify("READY=1"));
   EXPECT_FALSE(Service("relative").notify("READY=1"));

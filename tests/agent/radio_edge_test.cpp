@@ -19,7 +19,7 @@ namespace {
 class RadioEdgeTest : public testing::Test {
  protected:
   RadioEdgeTest() {
-    Sender& op1 = bench.station("op1").sender;
+    MessageSender& op1 = bench.station("op1").sender;
     bench.interface().departed(op1.participant);
     op1.participant = station->id();
     bench.interface().hear(op1, 1, bench.now);

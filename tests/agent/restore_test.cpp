@@ -160,7 +160,7 @@ TEST_F(Restore, AfterARestartOfTheComputerItHolds) {
   EXPECT_THAT(bench->commands, only_zero());
 }
 
-TEST_F(Restore, AStartThatSaysWhereTheRobotIsReplacesTheStoredPlaceAndHolds) {
+TEST_F(Restore, AStartPoseReplacesTheStoredPlaceAndHolds) {
   take_lock_and_go();
   bench->run(1s);
   ASSERT_GT(bench->command.vx, 0.1);
@@ -275,7 +275,7 @@ TEST_F(Restore, ANumberBelowThoseRememberedIsTooOld) {
   EXPECT_EQ(op1->authority.holder(), "") << "not taken a second time";
 }
 
-TEST_F(Restore, WhatWasNotAcknowledgedMayBeAsIfNeverSent) {
+TEST_F(Restore, AnUnacknowledgedCommandMayBeLost) {
   ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
   // Dies within the write: neither acknowledged nor done.
   bench->send(*op2, CMD_TAKE);
@@ -313,11 +313,11 @@ TEST_F(Restore, AStopIsZeroAtOnceWhateverTheDiskDoes) {
   EXPECT_EQ(bench->command, Twist2{}) << "before it is on disk";
 }
 
-TEST_F(Restore, AFullDiskIsToldAndCommandsAreDoneAllTheSame) {
+TEST_F(Restore, AFullDiskIsReportedAndCommandsAreStillExecuted) {
   disk->set_full(true);
   EXPECT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
   EXPECT_EQ(bench->ask(*op1, CMD_GOTO, "", 30, 0), Reason::none);
-  EXPECT_THAT(op2->told(), Contains("store_failing"));
+  EXPECT_THAT(op2->notice_codes(), Contains("store_failing"));
   EXPECT_EQ(std::count(op2->notices.begin(), op2->notices.end(), op2->notices.front()), 1);
   bool unhealthy = false;
   for (const auto& c : op1->health.components())
@@ -328,7 +328,7 @@ TEST_F(Restore, AFullDiskIsToldAndCommandsAreDoneAllTheSame) {
   EXPECT_EQ(op1->authority.holder(), "") << "the state of before the full disk would be a guess";
   EXPECT_EQ(op1->behaviour.mode(), "hold");
   EXPECT_THAT(bench->commands, only_zero());
-  EXPECT_THAT(op1->told(), Contains("state_lost"));
+  EXPECT_THAT(op1->notice_codes(), Contains("state_lost"));
 }
 
 TEST_F(Restore, ACorruptStateIsHoldWithoutHolder) {
@@ -343,7 +343,7 @@ TEST_F(Restore, ACorruptStateIsHoldWithoutHolder) {
     EXPECT_EQ(op1->behaviour.mode(), "hold");
     EXPECT_THAT(bench->commands, only_zero());
     EXPECT_THAT(notice(*op1, "state_lost"), HasSubstr("its state was lost"));
-    EXPECT_THAT(op1->told(), Not(Contains("restarted")));
+    EXPECT_THAT(op1->notice_codes(), Not(Contains("restarted")));
   }
 }
 
@@ -361,7 +361,7 @@ TEST_F(Restore, APowerCutAtAnyMomentLeavesTheOldOrTheNewHolder) {
     crash();
     bench->run(1s);
     EXPECT_THAT(op1->authority.holder(), testing::AnyOf("op1", "op2")) << "step " << step;
-    EXPECT_THAT(op1->told(), Contains("restarted")) << "step " << step;
+    EXPECT_THAT(op1->notice_codes(), Contains("restarted")) << "step " << step;
   }
 }
 
@@ -372,7 +372,7 @@ TEST_F(Restore, WithoutADiskItIsAFirstStartEachTime) {
   crash();
   bench->run(1s);
   EXPECT_EQ(op1->authority.holder(), "");
-  EXPECT_THAT(op1->told(), Not(Contains("state_lost")));
+  EXPECT_THAT(op1->notice_codes(), Not(Contains("state_lost")));
 }
 
 TEST_F(Restore, ACommandWithAnOverlongStationNameCostsNothingOverARestart) {
@@ -390,10 +390,10 @@ TEST_F(Restore, ACommandWithAnOverlongStationNameCostsNothingOverARestart) {
   EXPECT_EQ(op1->authority.holder(), "op1");
   EXPECT_TRUE(op1->authority.locked());
   EXPECT_EQ(op1->authority.stops().size(), 1u);
-  EXPECT_THAT(op1->told(), Not(Contains("state_lost")));
+  EXPECT_THAT(op1->notice_codes(), Not(Contains("state_lost")));
 }
 
-TEST_F(Restore, DamagedStopsAreToldAndHoldTheRobot) {
+TEST_F(Restore, DamagedStopsAreReportedAndHoldTheRobot) {
   take_lock_and_go();
   bench->stop_agent();
   store::Bytes file = *disk->read("state").value();
@@ -428,7 +428,7 @@ TEST_F(Restore, AQuestionIsNotWritten) {
   EXPECT_EQ(disk->steps(), before) << "no write, no sync";
 }
 
-TEST_F(Restore, ATakeThatChangedNothingTakesNothingWhenItIsRepeatedAfterARestart) {
+TEST_F(Restore, ARepeatedTakeHasNoEffectAfterARestart) {
   ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
   ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
   const radio::Command last = bench->last_command;

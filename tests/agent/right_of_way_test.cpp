@@ -41,7 +41,7 @@ class RightOfWayTest : public testing::Test {
                          ++resumed;
                          own.mode = "hold";
                        },
-                       [this](const Notice& n) { told.push_back(n.code); }});
+                       [this](const Notice& n) { reported.push_back(n.code); }});
   }
   TeamBeacon beacon(const std::string& robot, double x, std::uint8_t rank) {
     TeamBeacon b{};
@@ -83,7 +83,7 @@ class RightOfWayTest : public testing::Test {
   int resumed{};
   double asked_width{};
   std::uint32_t seq{};
-  std::vector<std::string> searches{}, told{};
+  std::vector<std::string> searches{}, reported{};
 };
 
 TEST_F(RightOfWayTest, WithoutPermissionItDoesNotMove) {
@@ -112,7 +112,7 @@ TEST_F(RightOfWayTest, MakesWayForOneThatAsksAndResumesWhenItHasPassed) {
   pass(way, 1s, {passed});
   EXPECT_EQ(resumed, 1);
   EXPECT_FALSE(way.clears());
-  EXPECT_THAT(told, ElementsAre("made_way"));
+  EXPECT_THAT(reported, ElementsAre("made_way"));
 }
 
 TEST_F(RightOfWayTest, OneThatIsNotInTheCorridorDoesNotMove) {
@@ -142,7 +142,7 @@ TEST_F(RightOfWayTest, TheLowerRankMakesWayAndAmongEqualsTheLaterName) {
   EXPECT_FALSE(first.clears());
 }
 
-TEST_F(RightOfWayTest, OneThatCannotMakeWaySaysSoAndTheOtherDoesIt) {
+TEST_F(RightOfWayTest, ARobotThatCannotMakeWayRefusesAndTheOtherMakesWay) {
   RightOfWay lower = make();
   ASSERT_TRUE(lower.allow(true, now));
   clear_place.reset();
@@ -201,9 +201,9 @@ TEST_F(RightOfWayTest, OneThatMayNotMakeWayIsReportedOnce) {
   own.route = {{0.0, 0.0}, {15.0, 0.0}};
   pass(way, 8s, {beacon("r3", 3.0, 1)});
   EXPECT_FALSE(said(way).ask);
-  EXPECT_THAT(told, ElementsAre("yield_refused"));
+  EXPECT_THAT(reported, ElementsAre("yield_refused"));
   pass(way, 5s, {beacon("r3", 3.0, 1)});
-  EXPECT_THAT(told, ElementsAre("yield_refused"));
+  EXPECT_THAT(reported, ElementsAre("yield_refused"));
   EXPECT_TRUE(std::isinf(way.speed_limit())) << "the local planner decides whether it can pass";
 }
 
@@ -243,7 +243,7 @@ TEST_F(RightOfWayTest, ThePermissionEndsWithItsHolderAndSleepsAfterAStop) {
   EXPECT_FALSE(way.allowed());
 }
 
-TEST_F(RightOfWayTest, WhoQueuesBehindARobotDoesNotAskIt) {
+TEST_F(RightOfWayTest, AQueuingRobotDoesNotAsk) {
   RightOfWay way = make("r1");
   own.mode = "waypoint";
   own.drives = true;

@@ -10,7 +10,7 @@ contract::Route along(double from, double to, std::uint32_t unknown = 0) {
   return {.goal_id = 1, .corners = 3, .points = {{from, 0, 0}, {5, 0, 0}, {to, 5, 0}}, .unknown = unknown};
 }
 
-TEST(RouteReport, NothingIsSentWhileTheRobotDrivesAlongWhatStationsHave) {
+TEST(RouteReport, NothingIsSentWhileTheRouteIsUnchanged) {
   RouteReport report;
   Time now{};
   EXPECT_TRUE(report.due(along(0, 5), now));
@@ -48,7 +48,7 @@ TEST(RouteReport, ARouteThatIsLostAndFoundAgainAndAgainIsSentOnceASecond) {
   EXPECT_LE(sent, 10);
 }
 
-TEST(RouteReport, GroundThatWasSeenMeanwhileIsNews) {
+TEST(RouteReport, NewlySeenGroundIsSent) {
   RouteReport report;
   Time now{};
   EXPECT_TRUE(report.due(along(0, 5, 0b11), now));

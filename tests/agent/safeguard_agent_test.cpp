@@ -51,10 +51,10 @@ TEST_F(Safeguards, GoesOnWithoutItsHolder) {
   bench->run(8s);
   EXPECT_GT(bench->command.vx, 0.1);
   EXPECT_EQ(op2->behaviour.mode(), "waypoint");
-  EXPECT_THAT(op2->told(), Contains("link_lost"));
+  EXPECT_THAT(op2->notice_codes(), Contains("link_lost"));
   lose(false);
   bench->run(2s);
-  EXPECT_THAT(op1->told(), Contains("link_back"));
+  EXPECT_THAT(op1->notice_codes(), Contains("link_back"));
 }
 
 TEST_F(Safeguards, ARestartOfTheCommandComponentIsNoSignOfLifeOfTheHolder) {
@@ -64,7 +64,7 @@ TEST_F(Safeguards, ARestartOfTheCommandComponentIsNoSignOfLifeOfTheHolder) {
   bench->run(3s);
   ASSERT_TRUE(bench->agent().inject("command", ComponentFault::crash));
   bench->run(3500ms);
-  EXPECT_THAT(op2->told(), Contains("link_lost")) << "6.5 s after the last sign of life";
+  EXPECT_THAT(op2->notice_codes(), Contains("link_lost")) << "6.5 s after the last sign of life";
 }
 
 TEST_F(Safeguards, HoldsWithoutItsHolderAndDoesNotGoOnByItself) {
@@ -91,14 +91,14 @@ TEST_F(Safeguards, GoesBackToWhereItsHolderWasHeard) {
   const double heard = bench->pose.x;
   lose(true);
   bench->run(7s);
-  EXPECT_THAT(op2->told(), Contains("returning"));
+  EXPECT_THAT(op2->notice_codes(), Contains("returning"));
   EXPECT_NEAR(op2->behaviour.goal()[0], heard, 3.0);
   bench->run(60s);
   EXPECT_EQ(op2->behaviour.goal()[0], 0.0) << "not heard there either: on to the start";
   EXPECT_NEAR(bench->pose.x, 0.0, 1.0);
 }
 
-TEST_F(Safeguards, ARobotThatHoldsIsNotMade) {
+TEST_F(Safeguards, ALostLinkMovesNoRobotThatHolds) {
   begin(with(OnLoss::back));
   ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
   bench->commands.clear();
@@ -132,14 +132,14 @@ class Batteries : public Safeguards {
     bench->run(300ms);
   }
   int count(const std::string& code) {
-    const auto told = op2->told();
-    return static_cast<int>(std::count(told.begin(), told.end(), code));
+    const auto codes = op2->notice_codes();
+    return static_cast<int>(std::count(codes.begin(), codes.end(), code));
   }
   std::unique_ptr<wire::Participant> wire{};
   wire::Writer<sensor_msgs::msg::BatteryState> writer{};
 };
 
-TEST_F(Batteries, EveryThresholdIsToldOnceToEverybody) {
+TEST_F(Batteries, EveryThresholdIsReportedOnceToAllStations) {
   begin();
   charge(0.9F);
   EXPECT_FLOAT_EQ(op1->state.battery(), 0.9F);
@@ -239,7 +239,7 @@ TEST_F(RefusedReturn, SurvivesARestart) {
   EXPECT_EQ(op1->behaviour.goal()[0], 0.0);
 }
 
-TEST_F(Batteries, ARestartTellsNothingAgain) {
+TEST_F(Batteries, ARestartRepeatsNoReport) {
   begin();
   charge(0.25F);
   EXPECT_EQ(count("battery_warning"), 1);

@@ -34,7 +34,7 @@ class LinkLossTest : public testing::Test {
   std::optional<Eigen::Vector2d> place{Eigen::Vector2d(0, 0)};
 };
 
-TEST_F(LinkLossTest, IsNoticedAfterItsDelayAndToldOnce) {
+TEST_F(LinkLossTest, IsReportedOnceAfterItsDelay) {
   EXPECT_FALSE(at(9900ms).lost);
   EXPECT_TRUE(at(10s).lost);
   EXPECT_FALSE(at(11s).lost);
@@ -44,12 +44,12 @@ TEST_F(LinkLossTest, IsNoticedAfterItsDelayAndToldOnce) {
   EXPECT_FALSE(at(22s).found);
 }
 
-TEST_F(LinkLossTest, ARobotThatNobodyHoldsLosesNobody) {
+TEST_F(LinkLossTest, WithoutAHolderNoLinkIsLost) {
   held = false;
   EXPECT_FALSE(at(100s).lost);
 }
 
-TEST_F(LinkLossTest, GoesOnWhenToldTo) {
+TEST_F(LinkLossTest, ContinuesWhereThatIsConfigured) {
   loss = LinkLoss(with(OnLoss::go_on));
   const auto step = at(10s);
   EXPECT_TRUE(step.lost);
@@ -102,7 +102,7 @@ TEST_F(LinkLossTest, ARefusedStepIsAskedForAgain) {
   EXPECT_FALSE(at(14s).go_to);
 }
 
-TEST_F(LinkLossTest, DoesNotSetARobotMovingThatHolds) {
+TEST_F(LinkLossTest, MovesNoRobotThatHolds) {
   hear(2s, 5);
   EXPECT_FALSE(at(12s, false).go_to);
   EXPECT_FALSE(at(60s, false).go_to);
@@ -136,7 +136,7 @@ TEST(BatteryReturn, PausesLongerAfterEachRefusalUpToABound) {
   EXPECT_TRUE(back.refused(Reason::goal_unreachable, now)) << "another reason";
 }
 
-TEST(BatteryReturn, ThatTheHolderOverruledIsNotStoredForARestart) {
+TEST(BatteryReturn, AnOverruledReturnIsNotStored) {
   BatteryReturn back;
   back.begin(7, Time{1h});
   EXPECT_TRUE(back.pending(7));
@@ -156,7 +156,7 @@ TEST(BatteryReturn, EndsWithItsCauseOrByTheHolder) {
   }
 }
 
-TEST(BatteryWatch, TellsEachThresholdOnce) {
+TEST(BatteryWatch, ReportsEachThresholdOnce) {
   BatteryWatch watch({});
   EXPECT_EQ(watch.update(0.31), std::nullopt);
   EXPECT_EQ(watch.update(0.30), BatteryLevel::warning);
@@ -172,7 +172,7 @@ TEST(BatteryWatch, ASuddenFallIsTheLowestThreshold) {
   EXPECT_EQ(watch.update(0.05), BatteryLevel::last);
 }
 
-TEST(BatteryWatch, ABatteryThatWasChargedIsToldAgain) {
+TEST(BatteryWatch, ReportsAgainAfterACharge) {
   BatteryWatch watch({});
   EXPECT_EQ(watch.update(0.1), BatteryLevel::last);
   EXPECT_EQ(watch.update(1.0), std::nullopt);
@@ -180,14 +180,14 @@ TEST(BatteryWatch, ABatteryThatWasChargedIsToldAgain) {
   EXPECT_EQ(watch.update(0.3), BatteryLevel::warning);
 }
 
-TEST(BatteryWatch, WhatIsNotKnownTellsNothing) {
+TEST(BatteryWatch, AnUnknownChargeReportsNothing) {
   BatteryWatch watch({});
   EXPECT_EQ(watch.update(-1), std::nullopt);
   EXPECT_EQ(watch.update(std::nan("")), std::nullopt);
   EXPECT_EQ(watch.level(), BatteryLevel::good);
 }
 
-TEST(BatteryWatch, ARestartDoesNotTellAgain) {
+TEST(BatteryWatch, ARestartRepeatsNoReport) {
   BatteryWatch watch({});
   watch.restore(BatteryLevel::low);
   EXPECT_EQ(watch.update(0.15), std::nullopt);

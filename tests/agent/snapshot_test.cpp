@@ -36,7 +36,7 @@ Snapshot full() {
   Snapshot s;
   s.authority = {{77, 12},
                  Party{"op1", id_of('a')},
-                 Binding::Kept{{1, 2, 3}, wire::ParticipantId{4, 5, 6}, wire::ParticipantId{7, 8}},
+                 Binding::Stored{{1, 2, 3}, wire::ParticipantId{4, 5, 6}, wire::ParticipantId{7, 8}},
                  true,
                  {{"op2", id_of('b')}, {"others", Id{}}}};
   s.behaviour = {"waypoint", Reason::stopped, true, false, 9, {1.5, -2, 0.25}, true};
@@ -47,7 +47,7 @@ Snapshot full() {
       {4, -3, 1.5}, 2,  OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)},
       3.5,          41, Pose3::level({0.1, -0.2, 0.01}, 0),
       false};
-  KeptAnswers a;
+  StoredAnswers a;
   a.participant[3] = 4;
   a.station = "op1";
   a.station_id = id_of('a');
@@ -107,7 +107,7 @@ TEST(Snapshot, is_bounded) {
   Snapshot beyond = largest();
   beyond.authority.stops.resize(40, {"op9", Id{}});
   beyond.answers.resize(100, beyond.answers.front());
-  for (KeptAnswers& a : beyond.answers) a.answers.resize(50, {2, Reason::none, std::string(5000, 'x')});
+  for (StoredAnswers& a : beyond.answers) a.answers.resize(50, {2, Reason::none, std::string(5000, 'x')});
   EXPECT_LE(encode(beyond).size(), kSnapshotFormat.max_bytes);
   const Snapshot back = read_back(beyond);
   ASSERT_EQ(back.authority.stops.size(), 16u);
@@ -133,7 +133,7 @@ Snapshot hostile(Random& random) {
   const auto party = [&] { return Party{hostile_text(random), id_of(static_cast<char>(random.next()))}; };
   s.authority.epoch = {random.next(), static_cast<std::uint32_t>(random.next())};
   if (random.chance(0.7)) s.authority.holder = party();
-  if (random.chance(0.5)) s.authority.speaker = Binding::Kept{{1}, std::nullopt, wire::ParticipantId{2}};
+  if (random.chance(0.5)) s.authority.speaker = Binding::Stored{{1}, std::nullopt, wire::ParticipantId{2}};
   s.authority.locked = random.chance(0.5);
   for (std::uint64_t n = random.below(30); n > 0; --n) s.authority.stops.push_back(party());
   s.behaviour = {hostile_text(random),
@@ -163,7 +163,7 @@ Snapshot hostile(Random& random) {
   s.boot = random.next();
   s.battery = static_cast<std::uint8_t>(random.next());
   for (std::uint64_t n = random.below(20); n > 0; --n) {
-    KeptAnswers a;
+    StoredAnswers a;
     a.station = hostile_text(random);
     a.newest = random.chance(0.5) ? random.next() : random.below(5);
     a.floor = random.next();
@@ -174,7 +174,7 @@ Snapshot hostile(Random& random) {
   return s;
 }
 
-TEST(Snapshot, of_hostile_input_is_read_back_whole) {
+TEST(Snapshot, of_hostile_input_is_read_back_completely) {
   Random random(7);
   for (int i = 0; i < 200; ++i) {
     const Snapshot s = hostile(random);
@@ -186,8 +186,8 @@ TEST(Snapshot, of_hostile_input_is_read_back_whole) {
 }
 
 TEST(Snapshot, loses_one_section_alone_to_one_damaged_byte) {
-  const Snapshot whole = full();
-  const store::Bytes bytes = encode(whole);
+  const Snapshot intact = full();
+  const store::Bytes bytes = encode(intact);
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     store::Bytes bent = bytes;
     bent[at] ^= 0x41;
@@ -195,17 +195,17 @@ TEST(Snapshot, loses_one_section_alone_to_one_damaged_byte) {
     ASSERT_TRUE(read) << at;
     ASSERT_LE(read->lost.size(), 1u) << at;
     const Snapshot& s = read->snapshot;
-    int differ = (s.behaviour != whole.behaviour) + (s.answers != whole.answers) +
-                 (s.boot != whole.boot || s.battery != whole.battery);
+    int differ = (s.behaviour != intact.behaviour) + (s.answers != intact.answers) +
+                 (s.boot != intact.boot || s.battery != intact.battery);
     differ += read->authority_lost ? s.authority.holder == std::nullopt
-                                   : s.authority.holder != whole.authority.holder;
-    differ += s.authority.stops != whole.authority.stops;
-    differ += s.place != whole.place;
+                                   : s.authority.holder != intact.authority.holder;
+    differ += s.authority.stops != intact.authority.stops;
+    differ += s.place != intact.place;
     EXPECT_EQ(differ, static_cast<int>(read->lost.size())) << at;
   }
 }
 
-TEST(Snapshot, of_a_place_that_is_none_has_no_odometry) {
+TEST(Snapshot, with_an_invalid_place_has_no_odometry) {
   Snapshot s = full();
   s.place->newest->T_odom_base.orientation.w() = 7;
   EXPECT_FALSE(sanitized(s).place->newest);
@@ -301,12 +301,12 @@ TEST_F(RestoreTest, NothingIsAFirstStart) {
   EXPECT_FALSE(restore_state(nullptr).lost);
 }
 
-TEST_F(RestoreTest, AMissingStateThatOnceWasIsLost) {
+TEST_F(RestoreTest, AStateThatDisappearedIsLost) {
   ASSERT_TRUE(disk->replace(kMarkerFile, {}).ok());
   EXPECT_TRUE(restore_state(disk).lost);
 }
 
-TEST_F(RestoreTest, WhatCannotBeUsedIsLostWithItsReason) {
+TEST_F(RestoreTest, AnUnusableStateIsLostWithItsReason) {
   const auto lost = [&](const store::Bytes& bytes) {
     disk->plant(kStateFile, bytes);
     const Restored r = restore_state(disk);
@@ -345,10 +345,10 @@ TEST_F(RestoreTest, AFileOfANewerVersionIsNeverDeleted) {
 }
 
 TEST_F(RestoreTest, ADamagedByteAnywhereInTheFileLosesOneEntryAtMost) {
-  const store::Bytes whole = store::encode_envelope(kSnapshotFormat, 5, encode(full()));
-  for (std::size_t at = 0; at < whole.size(); ++at) {
+  const store::Bytes intact = store::encode_envelope(kSnapshotFormat, 5, encode(full()));
+  for (std::size_t at = 0; at < intact.size(); ++at) {
     disk = std::make_shared<store::MemoryDisk>();
-    store::Bytes bent = whole;
+    store::Bytes bent = intact;
     bent[at] ^= 0x20;
     disk->plant(kStateFile, bent);
     const Restored r = restore_state(disk);
@@ -363,11 +363,11 @@ TEST_F(RestoreTest, ADamagedByteAnywhereInTheFileLosesOneEntryAtMost) {
   }
 }
 
-TEST_F(RestoreTest, ATornFileGivesWhatIsThere) {
-  const store::Bytes whole = store::encode_envelope(kSnapshotFormat, 5, encode(full()));
+TEST_F(RestoreTest, ATornFileGivesItsIntactSections) {
+  const store::Bytes intact = store::encode_envelope(kSnapshotFormat, 5, encode(full()));
   std::size_t used = 0;
-  for (std::size_t size = 0; size < whole.size(); ++size) {
-    disk->plant(kStateFile, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+  for (std::size_t size = 0; size < intact.size(); ++size) {
+    disk->plant(kStateFile, {intact.begin(), intact.begin() + static_cast<std::ptrdiff_t>(size)});
     const Restored r = restore_state(disk);
     EXPECT_THAT(r.text, HasSubstr("torn"));
     EXPECT_NE(r.lost, r.snapshot.has_value());
@@ -379,7 +379,7 @@ TEST_F(RestoreTest, ATornFileGivesWhatIsThere) {
   EXPECT_GT(used, 100u);
 }
 
-TEST_F(RestoreTest, TheIdentityIsDrawnOnceAndKept) {
+TEST_F(RestoreTest, TheIdentityIsDrawnOnceAndStored) {
   EXPECT_EQ(restore_identity(disk, id_of('x')), id_of('x'));
   EXPECT_EQ(restore_identity(disk, id_of('y')), id_of('x'));
   disk->plant(kIdentityFile, store::Bytes(10, 1));

@@ -32,12 +32,12 @@ class KeeperTest : public testing::Test {
     keeper =
         std::make_unique<StateKeeper>(params, disk, *strand, nullptr, 0,
                                       StateKeeper::Outputs{[this](bool failing, const std::string& text) {
-                                        told.push_back(failing ? "failing: " + text : "works");
+                                        reported.push_back(failing ? "failing: " + text : "works");
                                       }});
     beat = strand->every(50ms, [this] { keeper->tick(); });
   }
   void save(std::uint32_t goal) {
-    keeper->save(with_goal(goal), [] { return std::vector<KeptAnswers>{}; });
+    keeper->save(with_goal(goal), [] { return std::vector<StoredAnswers>{}; });
   }
   void say_when_safe(const std::string& what) {
     keeper->when_safe([this, what] { said.push_back(what); });
@@ -52,7 +52,7 @@ class KeeperTest : public testing::Test {
   std::unique_ptr<Runtime> machine{scheduler.machine("r1", 5s)};
   std::shared_ptr<Executor> strand{machine->strand("command")};
   std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
-  std::vector<std::string> said{}, told{};
+  std::vector<std::string> said{}, reported{};
   std::unique_ptr<StateKeeper> keeper{};
   Timer beat{};
 };
@@ -77,7 +77,7 @@ TEST_F(KeeperTest, AnAcceptedCommandThatChangedNothingIsWrittenToo) {
         with_goal(1),
         [&] {
           ++written;
-          return std::vector<KeptAnswers>{};
+          return std::vector<StoredAnswers>{};
         },
         accepted);
     return written;
@@ -97,7 +97,7 @@ TEST_F(KeeperTest, WithNothingToSaveAnAnswerGoesAtOnce) {
   EXPECT_THAT(said, ElementsAre("first", "second"));
 }
 
-TEST_F(KeeperTest, WhatWaitsBehindAWriteThatFailsIsTriedAtOnce) {
+TEST_F(KeeperTest, ANewerStateIsWrittenAtOnceAfterAFailedWrite) {
   make();
   disk->set_full(true);
   save(1);
@@ -128,12 +128,12 @@ TEST_F(KeeperTest, AnAnswerNeverOvertakesTheOneBefore) {
   save(1);
   say_when_safe("changes");
   say_when_safe("repeat of it");
-  EXPECT_THAT(said, IsEmpty()) << "the repeat tells of what is not on disk yet";
+  EXPECT_THAT(said, IsEmpty()) << "the repeat reports what is not on disk yet";
   run(10ms);
   EXPECT_THAT(said, ElementsAre("changes", "repeat of it"));
 }
 
-TEST_F(KeeperTest, AFullDiskHoldsUpNothingAndIsToldOnce) {
+TEST_F(KeeperTest, AFullDiskDelaysNothingAndIsReportedOnce) {
   make();
   save(1);
   run(10ms);
@@ -145,11 +145,11 @@ TEST_F(KeeperTest, AFullDiskHoldsUpNothingAndIsToldOnce) {
   say_when_safe("three");
   run(5s);
   EXPECT_THAT(said, ElementsAre("two", "three"));
-  EXPECT_EQ(told.size(), 1u);
+  EXPECT_EQ(reported.size(), 1u);
   EXPECT_TRUE(keeper->failing());
 }
 
-TEST_F(KeeperTest, AStateThatCouldNotBeWrittenIsNotBelievedLater) {
+TEST_F(KeeperTest, AStateThatWasNotWrittenIsNotRestoredLater) {
   make();
   save(1);
   run(10ms);
@@ -172,8 +172,8 @@ TEST_F(KeeperTest, WritesTheNewestStateOnceTheDiskHasRoomAgain) {
   run(2s);
   EXPECT_EQ(on_disk(), 2u);
   EXPECT_FALSE(keeper->failing());
-  EXPECT_EQ(told.back(), "works");
-  EXPECT_EQ(told.size(), 2u);
+  EXPECT_EQ(reported.back(), "works");
+  EXPECT_EQ(reported.size(), 2u);
 }
 
 TEST_F(KeeperTest, WithoutADiskNothingWaits) {
@@ -183,7 +183,7 @@ TEST_F(KeeperTest, WithoutADiskNothingWaits) {
   say_when_safe("at once");
   EXPECT_THAT(said, ElementsAre("at once"));
   run(1s);
-  EXPECT_THAT(told, IsEmpty());
+  EXPECT_THAT(reported, IsEmpty());
 }
 
 TEST_F(KeeperTest, IsBounded) {
@@ -243,7 +243,7 @@ TEST(KeeperLive, TheNewestStateIsWrittenAtACleanEnd) {
     keeper = std::make_unique<StateKeeper>(KeeperParams{}, disk, *command, writer, 0,
                                            StateKeeper::Outputs{[](bool, const std::string&) {}});
     for (std::uint32_t goal = 1; goal <= 3; ++goal)
-      keeper->save(with_goal(goal), [] { return std::vector<KeptAnswers>{}; });
+      keeper->save(with_goal(goal), [] { return std::vector<StoredAnswers>{}; });
     given.set_value();
   });
   given.get_future().wait();
@@ -283,7 +283,7 @@ TEST(KeeperLive, ADiskThatDoesNotAnswerHoldsUpNothing) {
         params, slow, *command, writer, 0,
         StateKeeper::Outputs{[&](bool failing, const std::string&) { note(failing ? "failing" : "works"); }});
     beat = command->every(10ms, [&] { keeper->tick(); });
-    keeper->save(with_goal(1), [] { return std::vector<KeptAnswers>{}; });
+    keeper->save(with_goal(1), [] { return std::vector<StoredAnswers>{}; });
     keeper->when_safe([&] { note("accepted"); });
   });
   ASSERT_TRUE(wait_for(2));

@@ -61,7 +61,7 @@ Snapshot some_state() {
   Snapshot s;
   s.authority = {{77, 12},
                  Party{"op1", {}},
-                 Binding::Kept{{1}, {}, wire::ParticipantId{2}},
+                 Binding::Stored{{1}, {}, wire::ParticipantId{2}},
                  true,
                  {{"op2", {}}, {"op3", {}}}};
   s.behaviour.goal_known = true;
@@ -69,7 +69,7 @@ Snapshot some_state() {
     (void)s.behaviour.areas.add(
         nav::checked({.name = name, .kind = nav::AreaKind::keep_out, .corners = {{1, 2}, {3, 4}}}).value());
   s.boot = 5;
-  KeptAnswers a;
+  StoredAnswers a;
   a.station = "op1";
   a.newest = 12;
   a.answers = {{11, Reason::none, ""}, {12, Reason::locked, "locked by op2"}};
@@ -89,9 +89,9 @@ void check(const std::optional<ReadSnapshot>& read, std::size_t size) {
 
 TEST(StateMutation, AnyBytesInAFile) {
   Random random(1);
-  const Bytes whole = store::encode_envelope(kSnapshotFormat, 5, encode(some_state()));
+  const Bytes intact = store::encode_envelope(kSnapshotFormat, 5, encode(some_state()));
   for (std::size_t i = mutations(); i > 0; --i) {
-    const Bytes bytes = mutated(whole, random);
+    const Bytes bytes = mutated(intact, random);
     wire::largest_allocation = 0;
     const store::State state = store::decode_envelope(kSnapshotFormat, bytes);
     const auto read = decode_snapshot(state.found == store::LoadStatus::good ? state.payload : state.remains);
@@ -123,12 +123,12 @@ TEST(StateMutation, AnyBytesInASection) {
 TEST(StateMutation, AnyBytesOfAFinding) {
   constexpr store::StateFormat format{{'F', 'I', 'N', 'D'}, 1, 1024};
   Random random(4);
-  const Bytes whole = findings::to_file(findings::some(7));
-  const Bytes payload = store::decode_envelope(format, whole).payload;
+  const Bytes intact = findings::to_file(findings::some(7));
+  const Bytes payload = store::decode_envelope(format, intact).payload;
   for (std::size_t i = mutations(); i > 0; --i) {
     // Every second one with a checksum that is right.
     const Bytes bytes =
-        i % 2 == 0 ? mutated(whole, random) : store::encode_envelope(format, 0, mutated(payload, random));
+        i % 2 == 0 ? mutated(intact, random) : store::encode_envelope(format, 0, mutated(payload, random));
     wire::largest_allocation = 0;
     const findings::FindingFile file = findings::read_finding(bytes);
     ASSERT_LE(wire::largest_allocation, 4096 + 4 * bytes.size());

@@ -82,12 +82,12 @@ TEST_F(StickGateTest, SixHundredMillisecondsAreTheLimit) {
   EXPECT_TRUE(bench.interface().handle(s, bench.now));
 }
 
-TEST_F(StickGateTest, RefusalsAreToldOnceASecond) {
+TEST_F(StickGateTest, RefusalsAreReportedOnceASecond) {
   bench.now += 2s;
-  int told = 0;
+  int reports = 0;
   for (int i = 0; i < 40; ++i, bench.now += 50ms)
-    if (bench.interface().handle(bench.stick("op2"), bench.now)) ++told;
-  EXPECT_EQ(told, 2);
+    if (bench.interface().handle(bench.stick("op2"), bench.now)) ++reports;
+  EXPECT_EQ(reports, 2);
 }
 
 TEST_F(StickGateTest, RefusalHasNumberZeroAndNamesTheHolder) {
@@ -103,7 +103,7 @@ TEST_F(StickGateTest, NotANumberIsRefused) {
   EXPECT_EQ(send(bench.stick("op1", {std::nan(""), 0, 0})), Reason::out_of_range);
 }
 
-TEST_F(StickGateTest, WrongModeIsTold) {
+TEST_F(StickGateTest, AWrongModeIsRefused) {
   bench.requests.takes_stick = false;
   EXPECT_EQ(send(bench.stick("op1", {0.5, 0, 0})), Reason::wrong_mode);
   EXPECT_EQ(send(bench.stick("op1")), Reason::none);

@@ -91,8 +91,8 @@ TEST(SupervisionOfAStampedDriver, GetsStampedZerosWhenTheCommandComponentHangs) 
 TEST_F(SupervisionTest, ACrashedPlannerIsBackInATenthOfASecondAndTheRobotDrivesOn) {
   inject("planner", ComponentFault::crash);
   bench.run(100ms);
-  EXPECT_THAT(op->told(), Contains("component_failed"));
-  EXPECT_THAT(op->told(), Contains("component_back"));
+  EXPECT_THAT(op->notice_codes(), Contains("component_failed"));
+  EXPECT_THAT(op->notice_codes(), Contains("component_back"));
   bench.run(1s);
   EXPECT_EQ(health("planner").restarts(), 1u);
   EXPECT_EQ(health("planner").state(), radio::COMPONENT_UP);
@@ -105,7 +105,7 @@ TEST_F(SupervisionTest, AHungPlannerIsFoundWithinASecondReplacedAndZeroIsSentMea
   inject("planner", ComponentFault::hang);
   EXPECT_TRUE(zero_within(620ms));  // plans count for 500 ms
   bench.run(400ms);
-  EXPECT_THAT(op->told(), Contains("component_hung"));
+  EXPECT_THAT(op->notice_codes(), Contains("component_hung"));
   bench.run(1s);
   EXPECT_EQ(health("planner").hung(), 1u);
   EXPECT_EQ(health("planner").state(), radio::COMPONENT_UP);
@@ -128,7 +128,7 @@ TEST_F(SupervisionTest, ASecondHangRestartsTheAgent) {
   inject("sensors", ComponentFault::hang);
   bench.run(1s);
   EXPECT_THAT(ended, testing::HasSubstr("sensors"));
-  EXPECT_THAT(op->told(), Contains("escalated"));
+  EXPECT_THAT(op->notice_codes(), Contains("escalated"));
   EXPECT_TRUE(bench.command.zero());
   const std::size_t commands = bench.commands.size();
   bench.run(1s);
@@ -150,7 +150,7 @@ TEST_F(SupervisionTest, ACrashedCommandComponentIsBackWithItsStateUnderAnotherEp
   bench.run(10ms);
   EXPECT_TRUE(bench.command.zero());
   bench.run(90ms);
-  EXPECT_THAT(op->told(), testing::IsSupersetOf({"component_failed", "component_back", "restarted"}));
+  EXPECT_THAT(op->notice_codes(), testing::IsSupersetOf({"component_failed", "component_back", "restarted"}));
   bench.run(1s);
   EXPECT_NE(op->authority.epoch().start(), before.epoch().start());
   EXPECT_EQ(op->authority.epoch().counter(), before.epoch().counter() + 1);
@@ -178,7 +178,7 @@ TEST_F(SupervisionTest, AHungCommandStrandIsSeenFromOutsideAndEndsTheAgent) {
   bench.run(1s);
   EXPECT_THAT(ended, testing::HasSubstr("command"));
   EXPECT_LT(ended_at - hung_at, 1s);
-  EXPECT_THAT(op->told(), testing::IsSupersetOf({"component_hung", "escalated"}));
+  EXPECT_THAT(op->notice_codes(), testing::IsSupersetOf({"component_hung", "escalated"}));
   EXPECT_EQ(health("command").healthy(), false);
   const int was_alive = alive;
   bench.run(1s);
@@ -186,7 +186,7 @@ TEST_F(SupervisionTest, AHungCommandStrandIsSeenFromOutsideAndEndsTheAgent) {
 }
 
 // The station marks driver and store in its listing by the same rule.
-TEST_F(SupervisionTest, RestartTakesTheComponentsOfTheHealthReportAndSaysWhyNotTheOthers) {
+TEST_F(SupervisionTest, RestartTakesTheSupervisedComponentsAndRefusesOthers) {
   std::string answer;
   const auto ask = [&](const std::string& line) {
     answer.clear();
@@ -209,8 +209,9 @@ TEST_F(SupervisionTest, RestartTakesTheComponentsOfTheHealthReportAndSaysWhyNotT
   }
   EXPECT_GT(refused, 0U);
   for (const char* incomplete : {"restart", "restart planner now", "policy planner", "policy planner on"})
-    EXPECT_THAT(ask(incomplete), testing::MatchesRegex("refused: '" + std::string(incomplete) +
-                                                       "' is no command of the console .*restart COMPONENT.*\n"));
+    EXPECT_THAT(ask(incomplete),
+                testing::MatchesRegex("refused: '" + std::string(incomplete) +
+                                      "' is no command of the console .*restart COMPONENT.*\n"));
   EXPECT_THAT(ask("policy agent auto"), testing::Not(testing::HasSubstr("takes agent")));
 }
 
@@ -250,7 +251,7 @@ TEST_F(SupervisionTest, ACrashLoopBacksOffAndEscalates) {
   EXPECT_THAT(ended, testing::HasSubstr("planner"));
 }
 
-TEST_F(SupervisionTest, UnderTheOperatorsPolicyItWaitsForHim) {
+TEST_F(SupervisionTest, UnderThePolicyManualItWaitsForTheOperator) {
   EXPECT_EQ(bench.ask(*op, radio::CMD_POLICY, "planner", 0, 0, false), Reason::none);
   EXPECT_FALSE(health("planner").automatic());
   inject("planner", ComponentFault::crash);
@@ -263,17 +264,17 @@ TEST_F(SupervisionTest, UnderTheOperatorsPolicyItWaitsForHim) {
   EXPECT_GT(bench.command.vx, 0.5);
 }
 
-TEST_F(SupervisionTest, OnlyTheHolderRestartsAndOnlyWhatThereIs) {
+TEST_F(SupervisionTest, OnlyTheHolderRestartsAndOnlyComponents) {
   auto& other = bench.join("op2");
   bench.run(1s);
   EXPECT_EQ(bench.ask(other, radio::CMD_RESTART, "planner"), Reason::not_holder);
   EXPECT_EQ(bench.ask(*op, radio::CMD_RESTART, "wheels"), Reason::bad_argument);
   EXPECT_EQ(bench.ask(*op, radio::CMD_POLICY, "wheels"), Reason::bad_argument);
   EXPECT_EQ(bench.ask(*op, radio::CMD_POLICY, "command", 0, 0, false), Reason::not_supported);
-  EXPECT_THAT(op->told(), Not(Contains("component_back")));
+  EXPECT_THAT(op->notice_codes(), Not(Contains("component_back")));
 }
 
-TEST_F(SupervisionTest, TheOperatorRestartsTheWholeAgent) {
+TEST_F(SupervisionTest, TheOperatorRestartsTheAgent) {
   EXPECT_EQ(bench.ask(*op, radio::CMD_RESTART, "agent"), Reason::none);
   EXPECT_THAT(ended, testing::HasSubstr("operator"));
 }

@@ -61,7 +61,7 @@ void ConvoyFollowMode::clear() {
 void ConvoyFollowMode::enter(Time now) {
   free_since_ = moved_since_ = now;
   moved_at_.reset();
-  told_at_.reset();
+  reported_at_.reset();
 }
 
 void ConvoyFollowMode::tick(bool passes, Time now) {
@@ -86,20 +86,20 @@ void ConvoyFollowMode::tick(bool passes, Time now) {
   reason_ = watch(passes, now);
   if (reason_ == Reason::none || !pose) return;
   // Once for each place and matter.
-  if (told_at_ && told_ == reason_ && (*told_at_ - pose->position()).norm() < kSamePlace) return;
-  told_at_ = pose->position();
-  told_ = reason_;
+  if (reported_at_ && reported_ == reason_ && (*reported_at_ - pose->position()).norm() < kSamePlace) return;
+  reported_at_ = pose->position();
+  reported_ = reason_;
   const std::string hindrance = context_.convoy->hindrance(now);
   char place[64];
   std::snprintf(place, sizeof place, " at %.1f %.1f", pose->x, pose->y);
   if (reason_ == Reason::trail_impassable)
-    context_.tell_holder({{},
-                          Severity::warning,
-                          "trail_impassable",
-                          reason_,
-                          std::string(describe(reason_)) + ", and waits" + place});
+    context_.notify_holder({{},
+                            Severity::warning,
+                            "trail_impassable",
+                            reason_,
+                            std::string(describe(reason_)) + ", and waits" + place});
   else
-    context_.tell_holder(
+    context_.notify_holder(
         {{}, Severity::warning, "convoy_waits", reason_, hindrance + ", and it waits" + place});
 }
 
@@ -130,18 +130,18 @@ ModeProgress ConvoyFollowMode::progress(bool passes) const {
   return blocked;
 }
 
-void ConvoyFollowMode::store(KeptBehaviour& kept) const {
+void ConvoyFollowMode::store(StoredBehaviour& stored) const {
   if (!context_.convoy || !context_.convoy->role()) return;
   const Convoy::Role& role = *context_.convoy->role();
   store::Packer out;
   out.put(role.order.convoy).put(role.order.gap).put(role.order.speed).flag(role.left);
   out.put(static_cast<std::uint8_t>(role.index)).put(static_cast<std::uint8_t>(role.order.robots.size()));
   for (const std::string& robot : role.order.robots) out.text(robot);
-  kept.modes.push_back({std::string(row().name), out.bytes()});
+  stored.modes.push_back({std::string(row().name), out.bytes()});
 }
 
-void ConvoyFollowMode::restore(const KeptBehaviour& kept) {
-  const store::Bytes* bytes = kept.of(row().name);
+void ConvoyFollowMode::restore(const StoredBehaviour& stored) {
+  const store::Bytes* bytes = stored.of(row().name);
   if (!bytes || !context_.convoy) return;
   store::Unpacker in(*bytes);
   Convoy::Role role{};

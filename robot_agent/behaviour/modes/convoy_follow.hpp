@@ -29,8 +29,8 @@ class ConvoyFollowMode : public ModeModule {
   void tick(bool passes, Time now) override;
   void navigated(const Progress& progress) override { navigated_ = progress; }
   ModeProgress progress(bool passes) const override;
-  void store(KeptBehaviour& kept) const override;
-  void restore(const KeptBehaviour& kept) override;
+  void store(StoredBehaviour& stored) const override;
+  void restore(const StoredBehaviour& stored) override;
 
  private:
   /// Why the robot does not follow; none: it does, or has no reason to move.
@@ -43,9 +43,9 @@ class ConvoyFollowMode : public ModeModule {
   Time free_since_{};   ///< When there was a path to the next place.
   Time moved_since_{};  ///< When the robot moved, or had no reason to.
   std::optional<Eigen::Vector2d> moved_at_{};
-  Reason reason_{Reason::none};               ///< Why it does not follow.
-  std::optional<Eigen::Vector2d> told_at_{};  ///< Where its operator was notified of that.
-  Reason told_{Reason::none};
+  Reason reason_{Reason::none};                   ///< Why it does not follow.
+  std::optional<Eigen::Vector2d> reported_at_{};  ///< Where its operator was notified of that.
+  Reason reported_{Reason::none};
 };
 
 }  // namespace adit::agent

@@ -125,11 +125,11 @@ void ExploreMode::conclude(Reason reason, const std::string& text) {
   why_ = reason;
   complete_ = reason == Reason::none;
   view_.reason = reason;
-  context_.tell_holder({{},
-                        reason == Reason::no_viewpoint ? Severity::warning : Severity::info,
-                        complete_ ? "explored" : "explore_ended",
-                        reason,
-                        text});
+  context_.notify_holder({{},
+                          reason == Reason::no_viewpoint ? Severity::warning : Severity::info,
+                          complete_ ? "explored" : "explore_ended",
+                          reason,
+                          text});
   ++run_;  // No answer of the router counts any more.
   asked_.reset();
   navigated_ = {};
@@ -163,13 +163,13 @@ void ExploreMode::tick_return(Time now) {
   const bool heard = request_.after == AfterExploring::report && context_.holder_heard();
   if (heard || navigated_.arrived) return finish();
   if (!navigated_.unreachable && !(blocked_since_ && now - *blocked_since_ >= kReturnBlocked)) return;
-  context_.tell_holder({{},
-                        Severity::warning,
-                        "unreachable",
-                        Reason::goal_unreachable,
-                        request_.after == AfterExploring::home
-                            ? "the robot explored, but found no way home"
-                            : "the robot explored, but found no way to where its holder was heard"});
+  context_.notify_holder({{},
+                          Severity::warning,
+                          "unreachable",
+                          Reason::goal_unreachable,
+                          request_.after == AfterExploring::home
+                              ? "the robot explored, but found no way home"
+                              : "the robot explored, but found no way to where its holder was heard"});
   finish();
 }
 
@@ -179,9 +179,9 @@ void ExploreMode::finish() {
   goal_.reset();
 }
 
-void ExploreMode::store(KeptBehaviour& kept) const {
+void ExploreMode::store(StoredBehaviour& stored) const {
   if (view_.phase == ExplorationPhase::none) return;
-  kept.modes.push_back({"explore", store::Packer{}
+  stored.modes.push_back({"explore", store::Packer{}
                                        .put(static_cast<std::uint8_t>(view_.phase))
                                        .put(static_cast<std::uint8_t>(request_.after))
                                        .flag(complete_)
@@ -193,8 +193,8 @@ void ExploreMode::store(KeptBehaviour& kept) const {
 
 // The map of the router is empty after a restart of the agent: the next scans show that what is around the
 // robot was seen, and it looks at the rest again.
-void ExploreMode::restore(const KeptBehaviour& kept) {
-  const store::Bytes* bytes = kept.of("explore");
+void ExploreMode::restore(const StoredBehaviour& stored) {
+  const store::Bytes* bytes = stored.of("explore");
   if (!bytes) return;
   store::Unpacker in(*bytes);
   const auto state = in.get<std::uint8_t>();

@@ -33,8 +33,8 @@ class ExploreMode : public ModeModule {
   ModeProgress progress(bool) const override {
     return {.finished = is_over(), .exploration = active_ || is_over() ? view_ : contract::Exploration{}};
   }
-  void store(KeptBehaviour& kept) const override;
-  void restore(const KeptBehaviour& kept) override;
+  void store(StoredBehaviour& stored) const override;
+  void restore(const StoredBehaviour& stored) override;
 
  private:
   bool is_over() const {

@@ -45,14 +45,14 @@ void GetOutMode::tick(bool, Time now) {
     context_.output.write(Stand{}, now);
 }
 
-void GetOutMode::store(KeptBehaviour& kept) const {
+void GetOutMode::store(StoredBehaviour& stored) const {
   const RightOfWay* way = context_.right_of_way;
   if (way && way->allowed())
-    kept.modes.push_back({std::string(row().name), store::Packer{}.flag(way->asleep()).bytes()});
+    stored.modes.push_back({std::string(row().name), store::Packer{}.flag(way->asleep()).bytes()});
 }
 
-void GetOutMode::restore(const KeptBehaviour& kept) {
-  const store::Bytes* bytes = kept.of(row().name);
+void GetOutMode::restore(const StoredBehaviour& stored) {
+  const store::Bytes* bytes = stored.of(row().name);
   if (!bytes || !context_.right_of_way) return;
   store::Unpacker in(*bytes);
   const bool asleep = in.flag();

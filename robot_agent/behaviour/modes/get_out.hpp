@@ -20,8 +20,8 @@ class GetOutMode : public ModeModule {
   void tick(bool passes, Time now) override;
   void navigated(const Progress& progress) override { navigated_ = progress; }
   ModeProgress progress(bool) const override { return {.navigation = navigated_}; }
-  void store(KeptBehaviour& kept) const override;
-  void restore(const KeptBehaviour& kept) override;
+  void store(StoredBehaviour& stored) const override;
+  void restore(const StoredBehaviour& stored) override;
 
  private:
   ModeContext context_;

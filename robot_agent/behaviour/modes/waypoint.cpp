@@ -34,10 +34,10 @@ void WaypointMode::enter(Time now) {
   last_.reset();
   used_up_ = false;
   free_since_ = now;
-  blocked_told_ = false;
+  blocked_reported_ = false;
 }
 
-void WaypointMode::leave(Time) { unreachable_told_ = blocked_told_ = stuck_told_ = false; }
+void WaypointMode::leave(Time) { unreachable_reported_ = blocked_reported_ = stuck_reported_ = false; }
 
 void WaypointMode::clear() { goal_ = {.id = goal_.id}; }
 
@@ -45,7 +45,7 @@ void WaypointMode::tick(bool passes, Time now) {
   if (!goal_.known) return;
   if (navigated_.arrived && !goal_.reached && passes) {
     goal_.reached = true;
-    context_.tell_holder({{}, Severity::info, "arrived", Reason::none, "goal reached"});
+    context_.notify_holder({{}, Severity::info, "arrived", Reason::none, "goal reached"});
   }
   count(passes);
   if (goal_.reached || used_up_)
@@ -70,11 +70,11 @@ void WaypointMode::count(bool passes) {
   const double stopping = context_.stopping ? context_.stopping() : 0.0;
   if (driven_ + stopping < budget_) return;
   used_up_ = true;
-  context_.tell_holder({{},
-                        Severity::warning,
-                        "unknown_budget",
-                        Reason::unknown_budget,
-                        std::string(describe(Reason::unknown_budget))});
+  context_.notify_holder({{},
+                          Severity::warning,
+                          "unknown_budget",
+                          Reason::unknown_budget,
+                          std::string(describe(Reason::unknown_budget))});
 }
 
 void WaypointMode::limit_unknown(double metres) {
@@ -86,29 +86,29 @@ void WaypointMode::limit_unknown(double metres) {
 
 void WaypointMode::watch(GoalState state, Time now) {
   const bool unreachable = state == GoalState::blocked && navigated_.unreachable && !used_up_;
-  if (unreachable && !unreachable_told_)
-    context_.tell_holder({{},
-                          Severity::warning,
-                          "unreachable",
-                          unreachable_because(),
-                          navigated_.reason == Reason::none ? "no way leads to the goal"
-                                                            : std::string(describe(navigated_.reason))});
-  unreachable_told_ = unreachable;
+  if (unreachable && !unreachable_reported_)
+    context_.notify_holder({{},
+                            Severity::warning,
+                            "unreachable",
+                            unreachable_because(),
+                            navigated_.reason == Reason::none ? "no way leads to the goal"
+                                                              : std::string(describe(navigated_.reason))});
+  unreachable_reported_ = unreachable;
   if (state != GoalState::blocked || unreachable || used_up_) {
     free_since_ = now;
-    blocked_told_ = false;
-  } else if (!blocked_told_ && now - free_since_ >= kBlockedAfter) {
-    blocked_told_ = true;
-    context_.tell_holder({{},
-                          Severity::warning,
-                          std::string(name(why_blocked())),
-                          why_blocked(),
-                          text_of(navigated_.in_collision)});
+    blocked_reported_ = false;
+  } else if (!blocked_reported_ && now - free_since_ >= kBlockedAfter) {
+    blocked_reported_ = true;
+    context_.notify_holder({{},
+                            Severity::warning,
+                            std::string(name(why_blocked())),
+                            why_blocked(),
+                            text_of(navigated_.in_collision)});
   }
-  if (navigated_.stuck && !stuck_told_)
-    context_.tell_holder(
+  if (navigated_.stuck && !stuck_reported_)
+    context_.notify_holder(
         {{}, Severity::warning, "stuck", Reason::stuck, "no progress towards the goal for 45 s"});
-  stuck_told_ = navigated_.stuck;
+  stuck_reported_ = navigated_.stuck;
 }
 
 Result<void> WaypointMode::check_goal(const Eigen::Vector3d& goal, Facts& facts) const {
@@ -149,16 +149,16 @@ Reason WaypointMode::why_blocked() const {
   return navigated_.in_collision == nav::Side::none ? Reason::blocked : Reason::start_in_collision;
 }
 
-void WaypointMode::store(KeptBehaviour& kept) const {
-  kept.goal_known = goal_.known;
-  kept.goal_reached = goal_.reached;
-  kept.goal_id = goal_.id;
-  kept.goal = goal_.place;
-  kept.goal_on_floor = goal_.on_floor;
+void WaypointMode::store(StoredBehaviour& stored) const {
+  stored.goal_known = goal_.known;
+  stored.goal_reached = goal_.reached;
+  stored.goal_id = goal_.id;
+  stored.goal = goal_.place;
+  stored.goal_on_floor = goal_.on_floor;
 }
 
-void WaypointMode::restore(const KeptBehaviour& kept) {
-  goal_ = {kept.goal_known, kept.goal_reached, kept.goal_id, kept.goal, kept.goal_on_floor};
+void WaypointMode::restore(const StoredBehaviour& stored) {
+  goal_ = {stored.goal_known, stored.goal_reached, stored.goal_id, stored.goal, stored.goal_on_floor};
 }
 
 }  // namespace adit::agent

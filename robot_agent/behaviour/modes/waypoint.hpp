@@ -28,8 +28,8 @@ class WaypointMode : public ModeModule {
   void limit_unknown(double metres) override;
   void navigated(const Progress& progress) override { navigated_ = progress; }
   ModeProgress progress(bool passes) const override;
-  void store(KeptBehaviour& kept) const override;
-  void restore(const KeptBehaviour& kept) override;
+  void store(StoredBehaviour& stored) const override;
+  void restore(const StoredBehaviour& stored) override;
 
  private:
   void watch(GoalState state, Time now);
@@ -53,7 +53,7 @@ class WaypointMode : public ModeModule {
   Goal goal_{};
   Progress navigated_{};
   Time free_since_{};
-  bool blocked_told_{}, unreachable_told_{}, stuck_told_{};
+  bool blocked_reported_{}, unreachable_reported_{}, stuck_reported_{};
   double budget_{std::numeric_limits<double>::infinity()};  ///< Metres while the goal is unseen.
   double driven_{};                        ///< Metres of the budget since it was given or renewed.
   std::optional<Eigen::Vector2d> last_{};  ///< Where metres were counted last, map frame, m.
