@@ -77,8 +77,8 @@ void Agent::report(findings::Finding finding) {
   strand.post([context = impl_->context.get(), &strand, finding = std::move(finding)]() mutable {
     if (finding.stamp == 0) finding.stamp = to_stamp(strand.now());
     if (const auto taken = context->findings->report(std::move(finding)); !taken)
-      context->notifier->send(
-          {{}, Severity::warning, "finding_refused", taken.reason(), "a finding: " + taken.error().text});
+      context->notifier->to_all(Severity::warning, "finding_refused", taken.reason(),
+                                "a finding: " + taken.error().text);
   });
 }
 

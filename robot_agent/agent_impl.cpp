@@ -58,59 +58,42 @@ void Agent::Impl::end_disk() {
 }
 
 UnitParams Agent::Impl::command_unit() {
-  UnitParams unit{};
-  unit.name = "command";
-  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
-    return std::unique_ptr<Component>(
-        std::make_unique<CommandComponent>(params, strand, decider_of(params), *context));
-  };
-  return unit;
+  return {.name = "command", .make = [this](Executor& strand) -> std::unique_ptr<Component> {
+            return std::make_unique<CommandComponent>(params, strand, decider_of(params), *context);
+          }};
 }
 
 UnitParams Agent::Impl::planner_unit() {
-  UnitParams unit{};
-  unit.name = "planner";
-  unit.dedicated = true;
-  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
-    return std::unique_ptr<Component>(
-        std::make_unique<Planner>(PlannerParams{params.platform, params.planning, params.local_planner},
-                                  strand, Log(params.log, params.name), context->planner, library()));
-  };
-  return unit;
+  return {
+      .name = "planner", .dedicated = true, .make = [this](Executor& strand) -> std::unique_ptr<Component> {
+        const PlannerParams planner_params{params.platform, params.planning, params.local_planner};
+        return std::make_unique<Planner>(planner_params, strand, Log(params.log, params.name),
+                                         context->planner, library());
+      }};
 }
 
 UnitParams Agent::Impl::router_unit() {
-  UnitParams unit{};
-  unit.name = "router";
-  unit.dedicated = true;
-  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
-    RouterParams router_params{};
-    router_params.platform = params.platform;
-    return std::unique_ptr<Component>(std::make_unique<Router>(
-        std::move(router_params), strand, Log(params.log, params.name), *context->router));
-  };
-  return unit;
+  return {
+      .name = "router", .dedicated = true, .make = [this](Executor& strand) -> std::unique_ptr<Component> {
+        return std::make_unique<Router>(RouterParams{.platform = params.platform}, strand,
+                                        Log(params.log, params.name), *context->router);
+      }};
 }
 
 UnitParams Agent::Impl::map_unit() {
-  UnitParams unit{};
-  unit.name = "map";
-  unit.dedicated = true;
-  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
-    return std::unique_ptr<Component>(
-        std::make_unique<MapPart>(MapParams{}, strand, Log(params.log, params.name), context->map_insertion));
-  };
-  return unit;
+  return {.name = "map", .dedicated = true, .make = [this](Executor& strand) -> std::unique_ptr<Component> {
+            return std::make_unique<MapPart>(MapParams{}, strand, Log(params.log, params.name),
+                                             context->map_insertion);
+          }};
 }
 
 UnitParams Agent::Impl::sensors_unit() {
-  UnitParams unit{};
-  unit.name = "sensors";
-  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
-    return std::unique_ptr<Component>(std::make_unique<Scans>(
+  UnitParams unit{.name = "sensors"};
+  unit.make = [this](Executor& strand) -> std::unique_ptr<Component> {
+    return std::make_unique<Scans>(
         strand, Log(params.log, params.name), params.name, params.platform, context->scans,
         [notifier = context->notifier.get()](const Notice& notice) { notifier->send(notice); },
-        params.perception == PerceptionLevel::off ? 0 : ++context->odometries));
+        params.perception == PerceptionLevel::off ? 0 : ++context->odometries);
   };
   unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
     auto readers =
@@ -154,8 +137,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
                                                     .seed = Random(params.seed).fork(kFindingsSalt).next()},
                                       params.disk, strand, disk_strand, findings_outputs());
   if (const std::string lost = e.findings->load().text(); !lost.empty())
-    e.notifier->send(
-        {{}, Severity::error, "findings_damaged", Reason::cannot_read, params.name + ": " + lost});
+    e.notifier->to_all(Severity::error, "findings_damaged", Reason::cannot_read, params.name + ": " + lost);
 
   if (params.perception != PerceptionLevel::off) {
     e.keyframes = std::make_unique<KeyframeStore>(params.disk, strand, disk_strand);
@@ -261,14 +243,10 @@ void Agent::Impl::open_map() {
         MapDiskParams{.robot = params.name}, params.disk, command_strand(), disk_strand,
         [this](bool failing, const std::string& text) {
           if (failing)
-            context->notifier->send({{},
-                                     Severity::error,
-                                     "map_not_stored",
-                                     Reason::cannot_write,
-                                     params.name + " cannot keep its map over a restart: " + text});
+            context->notifier->to_all(Severity::error, "map_not_stored", Reason::cannot_write,
+                                      params.name + " cannot keep its map over a restart: " + text);
           else
-            context->notifier->send(
-                {{}, Severity::info, "map_stored", Reason::none, params.name + ": " + text});
+            context->notifier->to_all(Severity::info, "map_stored", Reason::none, params.name + ": " + text);
         });
   e.map = std::make_unique<MapKeeper>(
       MapKeeperParams{.robot = params.name,
@@ -277,7 +255,7 @@ void Agent::Impl::open_map() {
       std::move(disk));
   const LoadedMap loaded = e.map->load();
   if (const std::string lost = loaded.text(); !lost.empty())
-    e.notifier->send({{}, Severity::error, "map_damaged", loaded.reason, params.name + ": " + lost});
+    e.notifier->to_all(Severity::error, "map_damaged", loaded.reason, params.name + ": " + lost);
 }
 
 std::shared_ptr<const nav::PlannerLibrary> Agent::Impl::library() {
@@ -296,13 +274,10 @@ std::shared_ptr<const nav::PlannerLibrary> Agent::Impl::library() {
 StateKeeper::Outputs Agent::Impl::keeper_outputs() {
   return {[this](bool failing, const std::string& text) {
     if (failing)
-      context->notifier->send({{},
-                               Severity::error,
-                               "store_failing",
-                               Reason::cannot_write,
-                               params.name + " cannot keep its state over a restart: " + text});
+      context->notifier->to_all(Severity::error, "store_failing", Reason::cannot_write,
+                                params.name + " cannot keep its state over a restart: " + text);
     else
-      context->notifier->send({{}, Severity::info, "store_works", Reason::none, params.name + ": " + text});
+      context->notifier->to_all(Severity::info, "store_works", Reason::none, params.name + ": " + text);
     watch->note({.name = "store",
                  .state = failing ? PartState::failed : PartState::up,
                  .healthy = !failing,
@@ -313,7 +288,7 @@ StateKeeper::Outputs Agent::Impl::keeper_outputs() {
 
 FindingSource::Outputs Agent::Impl::findings_outputs() {
   const auto notify = [this](Severity severity, const char* code, const std::string& text) {
-    context->notifier->send({{}, severity, code, Reason::none, params.name + ": " + text});
+    context->notifier->to_all(severity, code, Reason::none, params.name + ": " + text);
   };
   return {[notify](const std::string& text) { notify(Severity::warning, "findings_full", text); },
           [notify](bool failing, const std::string& text) {

@@ -380,7 +380,7 @@ Convoy::Inputs Agent::CommandComponent::convoy_inputs() {
             const Pose2 pose = frames_.T_map_base();
             return Eigen::Vector3d(pose.x, pose.y, frames_.height());
           },
-          [this](const Notice& notice) { notices_.send_to_holder(notice); },
+          [this](const auto&... notice) { notices_.to_holder(notice...); },
           [this](const Eigen::Vector2d& place) { return navigation_.goal_free(place); }};
 }
 
@@ -389,7 +389,7 @@ RightOfWay::Outputs Agent::CommandComponent::right_of_way_outputs() {
             find_clear_place(corridor, asker, std::move(done));
           },
           [this](Time at) { return behaviour_.clear_way(at); }, [this](Time at) { behaviour_.resume(at); },
-          [this](const Notice& notice) { notices_.send_to_holder(notice); }};
+          [this](const auto&... notice) { notices_.to_holder(notice...); }};
 }
 
 contract::Route Agent::CommandComponent::followed_route(Time at) const {
@@ -464,7 +464,7 @@ void Agent::CommandComponent::find_clear_place(const nav::Corridor& corridor, co
 }
 
 Behaviour::Outputs Agent::CommandComponent::behaviour_outputs() {
-  return {[this](const Notice& notice) { notices_.send_to_holder(notice); },
+  return {[this](const auto&... notice) { notices_.to_holder(notice...); },
           [this] { telemetry_.send_behaviour(now()); }};
 }
 

@@ -365,9 +365,9 @@ void Behaviour::fall(const ModeRow& from, Reason reason) {
   // The last sample was centred: the stick was released, and the robot did not move.
   if (stale && stick_.centred()) {
     fell_because_ = Reason::none;
-    return outputs_.notify_holder({{}, Severity::info, "mode_changed", reason, text});
+    return outputs_.notify_holder(Severity::info, "mode_changed", reason, text);
   }
-  outputs_.notify_holder({{}, Severity::warning, stale ? "joystick_lost" : "mode_changed", reason, text});
+  outputs_.notify_holder(Severity::warning, stale ? "joystick_lost" : "mode_changed", reason, text);
 }
 
 void Behaviour::watch(Time now) {
@@ -375,8 +375,8 @@ void Behaviour::watch(Time now) {
   if (!waits) idle_since_ = now;
   if (!waits || idle_reported_ || now - idle_since_ < params_.idle_after) return;
   idle_reported_ = true;
-  outputs_.notify_holder(
-      {{}, Severity::info, "idle", Reason::none, "idle in " + std::string(decision_.mode->name)});
+  outputs_.notify_holder(Severity::info, "idle", Reason::none,
+                         "idle in " + std::string(decision_.mode->name));
 }
 
 // Returns the goal of the mode, otherwise one that another mode stores.

@@ -46,7 +46,7 @@ class Behaviour : public Requests {
   };
   struct Outputs {
     /// A notice for the holder; its operator_name is left empty.
-    std::function<void(const Notice&)> notify_holder{};
+    NotifyHolder notify_holder{};
     std::function<void()> changed{};
   };
 

@@ -35,7 +35,7 @@ struct ModeProgress {
 /// The context passed to a mode's module on construction.
 struct ModeContext {
   Mux::Output output{};  ///< To the mux: passes while the mode is admitted and the tree runs it.
-  std::function<void(const Notice&)> notify_holder{};
+  NotifyHolder notify_holder{};
   /// Whether no known obstacle covers a place (map frame, m).
   std::function<bool(const Eigen::Vector2d&)> goal_free{};
   /// Height of a goal without z, m; empty: the goal is on the floor.

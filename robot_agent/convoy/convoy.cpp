@@ -212,8 +212,8 @@ void Convoy::lead(Time now) {
   if (verdict.share < 1.0) leader_limit_ = verdict.share * std::min(leader_limit_, params_.max_speed);
   leader_limit_ = std::min(leader_limit_, verdict.limit);
   if (verdict.split && !split_reported_)
-    notify(Severity::warning, "convoy_split", Reason::leader_unknown,
-           "the convoy of " + params_.robot + " is split: a robot does not come after it");
+    inputs_.notify_holder(Severity::warning, "convoy_split", Reason::leader_unknown,
+                          "the convoy of " + params_.robot + " is split: a robot does not come after it");
   split_reported_ = verdict.split;
 }
 
@@ -302,8 +302,9 @@ void Convoy::follow(Time now) {
     stop = std::max(stop, end);
     follow_speed_ = std::min(most, kLostSpeed);
     if (!std::exchange(lost_reported_, true))
-      notify(Severity::warning, "convoy_lost", Reason::leader_unknown,
-             params_.robot + " does not hear " + ahead->name + ", and follows the known path to its end");
+      inputs_.notify_holder(
+          Severity::warning, "convoy_lost", Reason::leader_unknown,
+          params_.robot + " does not hear " + ahead->name + ", and follows the known path to its end");
     state_ = State::lost;
     return choose_target(stop, stop, true);
   }
@@ -424,10 +425,6 @@ std::optional<ConvoyPart> Convoy::part(std::uint32_t seq) const {
   for (std::uint32_t n = part.first; n < trail_.end() && part.points.size() < piece; ++n)
     part.points.push_back(trail_.point(n));
   return part;
-}
-
-void Convoy::notify(Severity severity, const char* code, Reason reason, std::string text) const {
-  inputs_.notify_holder({{}, severity, code, reason, std::move(text)});
 }
 
 }  // namespace adit::agent

@@ -52,7 +52,7 @@ class Convoy {
     const PeerTable& peers;
     /// Position of this robot, map frame, m; nothing while localisation is not initialised.
     std::function<std::optional<Eigen::Vector3d>()> place{};
-    std::function<void(const Notice&)> notify_holder{};
+    NotifyHolder notify_holder{};
     /// Whether no known obstacle covers a place, map frame, m. Empty: each is free.
     std::function<bool(const Eigen::Vector2d&)> free{};
   };
@@ -141,7 +141,6 @@ class Convoy {
   /// A place of the path, or one beside it where the path leads through an obstacle.
   Eigen::Vector3d beside(const Eigen::Vector3d& place);
   std::uint32_t wanted() const;
-  void notify(Severity severity, const char* code, Reason reason, std::string text) const;
 
   ConvoyParams params_;
   Inputs inputs_;

@@ -15,144 +15,99 @@ void Notices::send(const Notice& notice) const {
   notifier_.send(notice);
 }
 
-void Notices::send_to_holder(Notice notice) const {
-  notice.operator_name = holder_();
-  if (!notice.operator_name.empty()) send(notice);
+void Notices::to_holder(Severity severity, const std::string& code, Reason reason,
+                        const std::string& text) const {
+  if (const std::string holder = holder_(); !holder.empty()) send({holder, severity, code, reason, text});
 }
 
 void Notices::restored(const Restored& found, bool same_boot) const {
   if (found.lost)
-    send({{},
-          Severity::error,
-          "state_lost",
-          Reason::cannot_read,
-          robot_ + " started and holds: its state was lost (" + found.text + ")"});
+    to_all(Severity::error, "state_lost", Reason::cannot_read,
+           robot_ + " started and holds: its state was lost (" + found.text + ")");
   else if (found.snapshot)
-    send({{},
-          Severity::warning,
-          "restarted",
-          Reason::none,
-          robot_ + " was restarted: " + describe(*found.snapshot) +
-              (found.placed ? "; its start says where it is, so it holds"
-               : same_boot  ? ""
-                            : "; with its computer, so it holds")});
+    to_all(Severity::warning, "restarted", Reason::none,
+           robot_ + " was restarted: " + describe(*found.snapshot) +
+               (found.placed ? "; its start says where it is, so it holds"
+                : same_boot  ? ""
+                             : "; with its computer, so it holds"));
   if (found.damaged)
-    send({{},
-          Severity::error,
-          "state_damaged",
-          Reason::cannot_read,
-          robot_ + (found.hold ? " holds: " : ": ") + "its state was damaged (" + found.text + ")"});
+    to_all(Severity::error, "state_damaged", Reason::cannot_read,
+           robot_ + (found.hold ? " holds: " : ": ") + "its state was damaged (" + found.text + ")");
 }
 
 void Notices::tree_refused(const std::string& why) const {
-  send({{}, Severity::error, "tree_refused", Reason::tree_refused, robot_ + " runs in hold: " + why});
+  to_all(Severity::error, "tree_refused", Reason::tree_refused, robot_ + " runs in hold: " + why);
 }
 
 void Notices::namesake(const wire::ParticipantId& other, bool gives_way) const {
   const std::string who =
       "another robot, participant " + wire::to_string(other) + ", calls itself " + robot_ + ": ";
-  send({{},
-        gives_way ? Severity::error : Severity::warning,
-        "name_taken",
-        Reason::name_taken,
-        who + (gives_way ? "this one came later, holds and refuses commands; give it a name of its own"
-                         : "this one was first and stays in service; give the other one a name of its own")});
+  to_all(gives_way ? Severity::error : Severity::warning, "name_taken", Reason::name_taken,
+         who + (gives_way ? "this one came later, holds and refuses commands; give it a name of its own"
+                          : "this one was first and stays in service; give the other one a name of its own"));
 }
 
 void Notices::rival(const wire::ParticipantId& writer) const {
-  send({{},
-        Severity::error,
-        "rival_writer",
-        Reason::none,
-        "participant " + wire::to_string(writer) + " writes velocities to the driver of " + robot_ +
-            " beside its agent: end that program, neither is obeyed as long as both write"});
+  to_all(Severity::error, "rival_writer", Reason::none,
+         "participant " + wire::to_string(writer) + " writes velocities to the driver of " + robot_ +
+             " beside its agent: end that program, neither is obeyed as long as both write");
 }
 
 void Notices::odometry_jumped(const Pose2& guess) const {
   char place[64];
   std::snprintf(place, sizeof place, "%.1f %.1f %.2f", guess.x, guess.y, guess.yaw);
-  send({{},
-        Severity::error,
-        "odometry_jumped",
-        Reason::odometry_jumped,
-        "the odometry of " + robot_ +
-            " jumped: it holds with an empty local map, and assumes that it is at " + place +
-            "; check that, and set it by: pose " + robot_ + " X Y YAW"});
+  to_all(Severity::error, "odometry_jumped", Reason::odometry_jumped,
+         "the odometry of " + robot_ +
+             " jumped: it holds with an empty local map, and assumes that it is at " + place +
+             "; check that, and set it by: pose " + robot_ + " X Y YAW");
 }
 
 void Notices::not_localised_here(const Pose2& guess, const std::string& why) const {
   char place[64];
   std::snprintf(place, sizeof place, "%.1f %.1f %.2f", guess.x, guess.y, guess.yaw);
-  send({{},
-        Severity::error,
-        "not_localised_here",
-        Reason::not_localised_here,
-        robot_ + " was started again and does not recognise its surroundings (" + why +
-            "): it holds; it was at " + place + "; set where it is by: pose " + robot_ + " X Y YAW"});
+  to_all(Severity::error, "not_localised_here", Reason::not_localised_here,
+         robot_ + " was started again and does not recognise its surroundings (" + why +
+             "): it holds; it was at " + place + "; set where it is by: pose " + robot_ + " X Y YAW");
 }
 
 void Notices::localisation(Localisation health, double sigma) const {
   char known[48];
   std::snprintf(known, sizeof known, "%.2f m", sigma);
   if (health == Localisation::lost)
-    send_to_holder({{},
-                    Severity::error,
-                    "localisation_lost",
-                    Reason::localisation_lost,
-                    robot_ +
-                        " is lost: what its lidar sees does not fit what it saw before; only its wheels or "
-                        "legs carry its pose on"});
+    to_holder(Severity::error, "localisation_lost", Reason::localisation_lost,
+              robot_ +
+                  " is lost: what its lidar sees does not fit what it saw before; only its wheels or "
+                  "legs carry its pose on");
   else if (health == Localisation::weak)
-    send_to_holder(
-        {{},
-         Severity::warning,
-         "localisation_weak",
-         Reason::none,
-         robot_ +
-             " sees nothing that tells its place along its way, and relies on its wheels or legs; its "
-             "place is known to " +
-             known});
+    to_holder(Severity::warning, "localisation_weak", Reason::none,
+              robot_ +
+                  " sees nothing that tells its place along its way, and relies on its wheels or legs; its "
+                  "place is known to " +
+                  known);
   else
-    send_to_holder({{},
-                    Severity::info,
-                    "localisation_ok",
-                    Reason::none,
-                    robot_ + " knows its place again, to " + known});
+    to_holder(Severity::info, "localisation_ok", Reason::none,
+              robot_ + " knows its place again, to " + known);
 }
 
 void Notices::driver_lost() const {
-  send_to_holder(
-      {{}, Severity::error, "driver_lost", Reason::driver_silent, "the driver of " + robot_ + " is silent"});
+  to_holder(Severity::error, "driver_lost", Reason::driver_silent, "the driver of " + robot_ + " is silent");
 }
 
 void Notices::warning(Warning warning, bool stops) const {
   if (warning == Warning::lidar_silent)
-    send_to_holder({{},
-                    Severity::warning,
-                    "lidar_silent",
-                    Reason::terrain_stale,
-                    "the lidar of " + robot_ + " is silent: it drives blindly, at most 0.3 m/s"});
+    to_holder(Severity::warning, "lidar_silent", Reason::terrain_stale,
+              "the lidar of " + robot_ + " is silent: it drives blindly, at most 0.3 m/s");
   else if (warning == Warning::outside_area)
-    send_to_holder({{},
-                    Severity::warning,
-                    "outside_area",
-                    Reason::outside_area,
-                    robot_ + " is where its areas forbid it to be; in an autonomous mode it drives back"});
+    to_holder(Severity::warning, "outside_area", Reason::outside_area,
+              robot_ + " is where its areas forbid it to be; in an autonomous mode it drives back");
   else if (warning == Warning::tilted)
-    send_to_holder(
-        {{},
-         Severity::error,
-         "tilted",
-         Reason::tilted,
-         robot_ + " leans so far that it may tip over: it stands, and in manual it drives at most 0.3 m/s"});
+    to_holder(
+        Severity::error, "tilted", Reason::tilted,
+        robot_ + " leans so far that it may tip over: it stands, and in manual it drives at most 0.3 m/s");
   else
-    send_to_holder(
-        {{},
-         Severity::warning,
-         "obstacle_near",
-         Reason::none,
-         "something is in the way of " + robot_ +
-             (stops ? ": it slows down and stops" : ": it slows down to 0.3 m/s and does not stop")});
+    to_holder(Severity::warning, "obstacle_near", Reason::none,
+              "something is in the way of " + robot_ +
+                  (stops ? ": it slows down and stops" : ": it slows down to 0.3 m/s and does not stop"));
 }
 
 }  // namespace adit::agent

@@ -21,8 +21,11 @@ class Notices {
 
   /// Sends a notice to the operator it names, or to every operator if it names none.
   void send(const Notice& notice) const;
+  void to_all(Severity severity, const std::string& code, Reason reason, const std::string& text) const {
+    send({{}, severity, code, reason, text});
+  }
   /// Sends a notice to the holder; nothing is sent if there is no holder.
-  void send_to_holder(Notice notice) const;
+  void to_holder(Severity severity, const std::string& code, Reason reason, const std::string& text) const;
 
   /// Reports what a restart restored or lost. `same_boot`: the computer was not restarted.
   void restored(const Restored& found, bool same_boot) const;

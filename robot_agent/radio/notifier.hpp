@@ -23,6 +23,9 @@ class Notifier {
   Notifier& operator=(const Notifier&) = delete;
 
   void send(const Notice& notice);
+  void to_all(Severity severity, const std::string& code, Reason reason, const std::string& text) {
+    send({{}, severity, code, reason, text});
+  }
   /// As send(), but never blocks: returns false and sends nothing while another strand, which may hang, is
   /// sending.
   bool try_send(const Notice& notice);

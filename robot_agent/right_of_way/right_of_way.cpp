@@ -196,17 +196,13 @@ void RightOfWay::watch_wall(const Peer* wall, Time now) {
   const TeamBeacon& beacon = wall->heard_beacon->beacon;
   const std::string who = params_.robot + " waits for " + wall->name;
   if (refuses(beacon, claim_.root) && has_refused(claim(beacon).root))
-    return outputs_.notify_holder({{},
-                                   Severity::warning,
-                                   "yield_deadlock",
-                                   Reason::yield_deadlock,
-                                   who + ", and neither has a place to make way"});
+    return outputs_.notify_holder(Severity::warning, "yield_deadlock", Reason::yield_deadlock,
+                                  who + ", and neither has a place to make way");
   const std::string why = beacon.stopped ? "is stopped"
                           : refuses(beacon, claim_.root)
                               ? "finds no place to make way"
                               : "may not make way; allow it with: yield " + wall->name + " on";
-  outputs_.notify_holder(
-      {{}, Severity::warning, "yield_refused", Reason::yield_refused, who + ", which " + why});
+  outputs_.notify_holder(Severity::warning, "yield_refused", Reason::yield_refused, who + ", which " + why);
 }
 
 bool RightOfWay::in_corridor(const Own& own, const YieldAsk& ask, double margin) const {
@@ -314,7 +310,7 @@ void RightOfWay::end(Time now) {
   char text[96];
   std::snprintf(text, sizeof text, "%s made way for %s and stays %.1f m from where it was",
                 params_.robot.c_str(), way.root.c_str(), (way.place - way.from).norm());
-  outputs_.notify_holder({{}, Severity::info, "made_way", Reason::none, text});
+  outputs_.notify_holder(Severity::info, "made_way", Reason::none, text);
 }
 
 void RightOfWay::say(TeamBeacon& beacon) const {

@@ -68,7 +68,7 @@ class RightOfWay {
     /// Enters `get_out`. Errors: the first condition that does not hold.
     std::function<Result<void>(Time)> clear_way{};
     std::function<void(Time)> resume{};  ///< Leaves `get_out` for the mode before it.
-    std::function<void(const Notice&)> notify_holder{};
+    NotifyHolder notify_holder{};
   };
 
   RightOfWay(RightOfWayParams params, const PeerTable& peers, Outputs outputs)

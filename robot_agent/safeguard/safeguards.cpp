@@ -61,23 +61,17 @@ void Safeguards::watch_link(Time now) {
   const LinkLoss::Step step = link_loss_.tick(in, now);
   const std::string holder = authority.holder_name();
   if (step.lost)
-    dependencies_.notices.send({{},
-                                Severity::warning,
-                                "link_lost",
-                                Reason::no_answer,
-                                robot_ + " has not heard " + holder + " for " +
-                                    std::to_string(std::lround(seconds(step.silence))) + " s"});
+    dependencies_.notices.to_all(Severity::warning, "link_lost", Reason::no_answer,
+                                 robot_ + " has not heard " + holder + " for " +
+                                     std::to_string(std::lround(seconds(step.silence))) + " s");
   if (step.found)
-    dependencies_.notices.send(
-        {{}, Severity::info, "link_back", Reason::none, robot_ + " hears " + holder + " again"});
+    dependencies_.notices.to_all(Severity::info, "link_back", Reason::none,
+                                 robot_ + " hears " + holder + " again");
   if (step.hold) {
     dependencies_.behaviour.hold(Reason::no_answer, now);
-    dependencies_.notices.send(
-        {{},
-         Severity::warning,
-         "mode_changed",
-         Reason::no_answer,
-         robot_ + " holds until it hears " + holder + " again and is told to go on; its goal is kept"});
+    dependencies_.notices.to_all(
+        Severity::warning, "mode_changed", Reason::no_answer,
+        robot_ + " holds until it hears " + holder + " again and is told to go on; its goal is kept");
   }
   if (step.go_to && !go_back(*step.go_to, "its holder is not heard", now)) link_loss_.refused(now);
 }
@@ -86,11 +80,8 @@ Result<void> Safeguards::go_back(const Eigen::Vector2d& place, const std::string
   auto asked =
       dependencies_.behaviour.request_goal({place.x(), place.y(), std::nan("")}, Commander::agent, now);
   if (asked)
-    dependencies_.notices.send({{},
-                                Severity::warning,
-                                "returning",
-                                Reason::none,
-                                robot_ + " goes back to " + place_text(place) + ": " + why});
+    dependencies_.notices.to_all(Severity::warning, "returning", Reason::none,
+                                 robot_ + " goes back to " + place_text(place) + ": " + why);
   return asked;
 }
 
@@ -105,12 +96,9 @@ void Safeguards::watch_return(Time now) {
   const auto asked = go_back(start, "its battery is nearly empty", now);
   if (asked) return battery_return_.accepted();
   if (!battery_return_.refused(asked.reason(), now)) return;
-  dependencies_.notices.send({{},
-                              Severity::error,
-                              "return_refused",
-                              asked.reason(),
-                              robot_ + " cannot go back to " + place_text(start) + " yet (" +
-                                  asked.error().text + "); it tries again until you request something else"});
+  dependencies_.notices.to_all(Severity::error, "return_refused", asked.reason(),
+                               robot_ + " cannot go back to " + place_text(start) + " yet (" +
+                                   asked.error().text + "); it tries again until you request something else");
 }
 
 void Safeguards::battery(float charge, Time now) {
@@ -122,12 +110,9 @@ void Safeguards::battery_fell(BatteryLevel level, Time now) {
   const char* code = level == BatteryLevel::last  ? "battery_last"
                      : level == BatteryLevel::low ? "battery_low"
                                                   : "battery_warning";
-  dependencies_.notices.send(
-      {{},
-       level == BatteryLevel::last ? Severity::error : Severity::warning,
-       code,
-       Reason::none,
-       robot_ + " has " + std::to_string(std::lround(charge_ * 100)) + " % of its battery left"});
+  dependencies_.notices.to_all(
+      level == BatteryLevel::last ? Severity::error : Severity::warning, code, Reason::none,
+      robot_ + " has " + std::to_string(std::lround(charge_ * 100)) + " % of its battery left");
   // An operator who drives manually sees the charge, and decides.
   if (level != BatteryLevel::last || !dependencies_.behaviour.mode().autonomous()) return;
   if (params_.return_at_last_battery) {
@@ -135,11 +120,8 @@ void Safeguards::battery_fell(BatteryLevel level, Time now) {
     return watch_return(now);
   }
   dependencies_.behaviour.hold(Reason::none, now);
-  dependencies_.notices.send({{},
-                              Severity::warning,
-                              "mode_changed",
-                              Reason::none,
-                              robot_ + " holds: its battery is nearly empty; its goal is kept"});
+  dependencies_.notices.to_all(Severity::warning, "mode_changed", Reason::none,
+                               robot_ + " holds: its battery is nearly empty; its goal is kept");
 }
 
 }  // namespace adit::agent

@@ -50,19 +50,23 @@ class BehaviourTest : public testing::Test {
   Pose2 at{};
   double stopping{};
   int changes{};
-  Behaviour behaviour{{},
-                      Decider::load(source_folder() + "/config/trees/robot.xml").value(),
-                      mux,
-                      {[this](Time) { return facts; },
-                       [this](const Eigen::Vector2d&) { return goal_free; },
-                       {},
-                       [this] { return std::optional(at); },
-                       [this](const Pose2& pose) -> Result<void> {
-                         set.push_back(pose);
-                         return {};
-                       },
-                       [this] { return stopping; }},
-                      {[this](const Notice& n) { notices.push_back(n); }, [this] { ++changes; }}};
+  Behaviour behaviour{
+      {},
+      Decider::load(source_folder() + "/config/trees/robot.xml").value(),
+      mux,
+      {[this](Time) { return facts; },
+       [this](const Eigen::Vector2d&) { return goal_free; },
+       {},
+       [this] { return std::optional(at); },
+       [this](const Pose2& pose) -> Result<void> {
+         set.push_back(pose);
+         return {};
+       },
+       [this] { return stopping; }},
+      {[this](Severity severity, const std::string& code, Reason reason, const std::string& text) {
+         notices.push_back({{}, severity, code, reason, text});
+       },
+       [this] { ++changes; }}};
   Time now{Duration{1h}};
   bool streaming{};
   Twist2 value{};
@@ -414,7 +418,7 @@ class AreasOfBehaviour : public BehaviourTest {
       return areas.permits({goal.x(), goal.y(), 0});
     };
     robot.emplace(BehaviourParams{}, Decider::load(source_folder() + "/config/trees/robot.xml").value(), mux,
-                  std::move(inputs), Behaviour::Outputs{[](const Notice&) {}, [this] { ++changes; }});
+                  std::move(inputs), Behaviour::Outputs{[](const auto&...) {}, [this] { ++changes; }});
     robot->tick(now);
   }
   Reason add(const char* name, nav::AreaKind kind, std::vector<Eigen::Vector2d> corners) {

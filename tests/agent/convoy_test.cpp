@@ -32,7 +32,8 @@ class ConvoyTest : public testing::Test {
   }
   Convoy make(const std::string& robot) {
     return Convoy({robot, kLength, 2.0}, {peers, [this] { return std::optional(place); },
-                                          [this](const Notice& n) { reported.push_back(n.code); }});
+                                          [this](Severity, const std::string& code, Reason,
+                                                 const std::string&) { reported.push_back(code); }});
   }
   /// A beacon of a robot arrives.
   void say(const std::string& robot, const std::optional<ConvoyPart>& part, double vx = 0.0) {
@@ -171,7 +172,7 @@ TEST_F(ConvoyTest, ARobotThatStandsOnThePathIsPassedWithRoom) {
 // The maps of two robots drift apart: here the leader's path leads through this robot's wall.
 TEST_F(ConvoyTest, DrivesBesideAPathThatLeadsThroughAnObstacle) {
   double wall = -5.0;
-  Convoy convoy({"r2", kLength, 2.0}, {peers, [this] { return std::optional(place); }, [](const Notice&) {},
+  Convoy convoy({"r2", kLength, 2.0}, {peers, [this] { return std::optional(place); }, [](const auto&...) {},
                                        [&wall](const Eigen::Vector2d& at) { return at.y() > wall; }});
   const ConvoyOrder mine = order({"r1", "r2"});
   ASSERT_TRUE(convoy.start(mine));

@@ -63,11 +63,15 @@ class ExploreModeTest : public testing::Test {
   nav::ExploreStep answer{};
   std::string area{};
   Reason refusal{Reason::none};
-  Behaviour behaviour{{},
-                      Decider::load(source_folder() + "/config/trees/robot.xml").value(),
-                      mux,
-                      inputs(),
-                      {[this](const Notice& n) { notices.push_back(n); }, [] {}}};
+  Behaviour behaviour{
+      {},
+      Decider::load(source_folder() + "/config/trees/robot.xml").value(),
+      mux,
+      inputs(),
+      {[this](Severity severity, const std::string& code, Reason reason, const std::string& text) {
+         notices.push_back({{}, severity, code, reason, text});
+       },
+       [] {}}};
   Time now{Duration{1h}};
 };
 

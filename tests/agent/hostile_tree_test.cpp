@@ -50,7 +50,7 @@ class HostileTree : public testing::TestWithParam<std::string> {
                       Decider::load_unchecked(GetParam()).value(),
                       mux,
                       {[this](Time) { return facts; }, [](const Eigen::Vector2d&) { return true; }, {}, {}},
-                      {[](const Notice&) {}, [] {}}};
+                      {[](const auto&...) {}, [] {}}};
   Time now{Duration{1h}};
   bool streaming{}, program{};
   Twist2 value{};

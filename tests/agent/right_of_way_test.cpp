@@ -41,7 +41,9 @@ class RightOfWayTest : public testing::Test {
                          ++resumed;
                          own.mode = "hold";
                        },
-                       [this](const Notice& n) { reported.push_back(n.code); }});
+                       [this](Severity, const std::string& code, Reason, const std::string&) {
+                         reported.push_back(code);
+                       }});
   }
   TeamBeacon beacon(const std::string& robot, double x, std::uint8_t rank) {
     TeamBeacon b{};

@@ -93,14 +93,10 @@ void ConvoyFollowMode::tick(bool passes, Time now) {
   char place[64];
   std::snprintf(place, sizeof place, " at %.1f %.1f", pose->x, pose->y);
   if (reason_ == Reason::trail_impassable)
-    context_.notify_holder({{},
-                            Severity::warning,
-                            "trail_impassable",
-                            reason_,
-                            std::string(describe(reason_)) + ", and waits" + place});
+    context_.notify_holder(Severity::warning, "trail_impassable", reason_,
+                           std::string(describe(reason_)) + ", and waits" + place);
   else
-    context_.notify_holder(
-        {{}, Severity::warning, "convoy_waits", reason_, hindrance + ", and it waits" + place});
+    context_.notify_holder(Severity::warning, "convoy_waits", reason_, hindrance + ", and it waits" + place);
 }
 
 Reason ConvoyFollowMode::watch(bool passes, Time now) {

@@ -125,11 +125,8 @@ void ExploreMode::conclude(Reason reason, const std::string& text) {
   why_ = reason;
   complete_ = reason == Reason::none;
   view_.reason = reason;
-  context_.notify_holder({{},
-                          reason == Reason::no_viewpoint ? Severity::warning : Severity::info,
-                          complete_ ? "explored" : "explore_ended",
-                          reason,
-                          text});
+  context_.notify_holder(reason == Reason::no_viewpoint ? Severity::warning : Severity::info,
+                         complete_ ? "explored" : "explore_ended", reason, text);
   ++run_;  // No answer of the router counts any more.
   asked_.reset();
   navigated_ = {};
@@ -163,13 +160,10 @@ void ExploreMode::tick_return(Time now) {
   const bool heard = request_.after == AfterExploring::report && context_.holder_heard();
   if (heard || navigated_.arrived) return finish();
   if (!navigated_.unreachable && !(blocked_since_ && now - *blocked_since_ >= kReturnBlocked)) return;
-  context_.notify_holder({{},
-                          Severity::warning,
-                          "unreachable",
-                          Reason::goal_unreachable,
-                          request_.after == AfterExploring::home
-                              ? "the robot explored, but found no way home"
-                              : "the robot explored, but found no way to where its holder was heard"});
+  context_.notify_holder(Severity::warning, "unreachable", Reason::goal_unreachable,
+                         request_.after == AfterExploring::home
+                             ? "the robot explored, but found no way home"
+                             : "the robot explored, but found no way to where its holder was heard");
   finish();
 }
 

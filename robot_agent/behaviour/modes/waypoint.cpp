@@ -45,7 +45,7 @@ void WaypointMode::tick(bool passes, Time now) {
   if (!goal_.known) return;
   if (navigated_.arrived && !goal_.reached && passes) {
     goal_.reached = true;
-    context_.notify_holder({{}, Severity::info, "arrived", Reason::none, "goal reached"});
+    context_.notify_holder(Severity::info, "arrived", Reason::none, "goal reached");
   }
   count(passes);
   if (goal_.reached || used_up_)
@@ -70,11 +70,8 @@ void WaypointMode::count(bool passes) {
   const double stopping = context_.stopping ? context_.stopping() : 0.0;
   if (driven_ + stopping < budget_) return;
   used_up_ = true;
-  context_.notify_holder({{},
-                          Severity::warning,
-                          "unknown_budget",
-                          Reason::unknown_budget,
-                          std::string(describe(Reason::unknown_budget))});
+  context_.notify_holder(Severity::warning, "unknown_budget", Reason::unknown_budget,
+                         std::string(describe(Reason::unknown_budget)));
 }
 
 void WaypointMode::limit_unknown(double metres) {
@@ -87,27 +84,21 @@ void WaypointMode::limit_unknown(double metres) {
 void WaypointMode::watch(GoalState state, Time now) {
   const bool unreachable = state == GoalState::blocked && navigated_.unreachable && !used_up_;
   if (unreachable && !unreachable_reported_)
-    context_.notify_holder({{},
-                            Severity::warning,
-                            "unreachable",
-                            unreachable_because(),
-                            navigated_.reason == Reason::none ? "no way leads to the goal"
-                                                              : std::string(describe(navigated_.reason))});
+    context_.notify_holder(Severity::warning, "unreachable", unreachable_because(),
+                           navigated_.reason == Reason::none ? "no way leads to the goal"
+                                                             : std::string(describe(navigated_.reason)));
   unreachable_reported_ = unreachable;
   if (state != GoalState::blocked || unreachable || used_up_) {
     free_since_ = now;
     blocked_reported_ = false;
   } else if (!blocked_reported_ && now - free_since_ >= kBlockedAfter) {
     blocked_reported_ = true;
-    context_.notify_holder({{},
-                            Severity::warning,
-                            std::string(name(why_blocked())),
-                            why_blocked(),
-                            text_of(navigated_.in_collision)});
+    context_.notify_holder(Severity::warning, std::string(name(why_blocked())), why_blocked(),
+                           text_of(navigated_.in_collision));
   }
   if (navigated_.stuck && !stuck_reported_)
-    context_.notify_holder(
-        {{}, Severity::warning, "stuck", Reason::stuck, "no progress towards the goal for 45 s"});
+    context_.notify_holder(Severity::warning, "stuck", Reason::stuck,
+                           "no progress towards the goal for 45 s");
   stuck_reported_ = navigated_.stuck;
 }
 
