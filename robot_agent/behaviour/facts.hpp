@@ -8,7 +8,7 @@
 
 namespace adit::agent {
 
-/// What the robot knows about itself when the conditions of its modes are evaluated.
+/// The state of the robot by which the conditions of its modes are evaluated.
 struct Facts {
   bool stopped{};        ///< A software stop is set.
   bool driver_alive{};   ///< Odometry arrived within the last 0.5 s.

@@ -15,7 +15,7 @@ namespace adit::agent {
 struct ModeContext;
 class ModeModule;
 
-/// When a condition is evaluated, and what its failure does.
+/// The time at which a condition is evaluated, and the effect of its failure.
 enum class Scope {
   on_entry,    ///< Evaluated only when the mode is entered; its failure refuses the mode.
   continuous,  ///< Evaluated on entry and while the mode lasts; then the row's `on_failure` is done.

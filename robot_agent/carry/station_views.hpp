@@ -9,7 +9,7 @@
 
 namespace adit::agent {
 
-/// What stations said of their maps: whether a carrier should send a robot's map to a station.
+/// Decides whether a carrier should send a robot's map to a station, from what stations said of their maps.
 class StationViews {
  public:
   static constexpr std::size_t kMaxStations = 16;

@@ -7,7 +7,7 @@
 
 namespace adit::agent {
 
-/// Where the keys of a platform's sensors are, as "file:line", for reports that name the line to change.
+/// Finds the keys of a platform's sensors, as "file:line", for reports that name the line to change.
 class ConfigLines {
  public:
   /// Reads the platform's file of a robot's file. Errors: those of the files.

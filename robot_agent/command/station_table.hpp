@@ -13,6 +13,7 @@ namespace adit::agent {
 /// A station counts as heard for this long after its last heartbeat.
 inline constexpr Duration kHeardFor = Binding::kBindingTimeout;
 
+/// A station in radio contact.
 struct Station {
   std::string name{};
   Id id{};

@@ -20,6 +20,7 @@ using contract::PlannedRoute;
 /// The answer to a command; RadioEdge adds the robot's name.
 using Answer = contract::Acknowledgement;
 
+/// A command to this robot as it arrived.
 struct Command {
   std::string robot{};
   MessageSender from{};
@@ -30,6 +31,7 @@ struct Command {
   std::optional<Error> invalid{};    ///< Why the arguments are refused; `request` then has only its row.
 };
 
+/// A sample of a station's joystick as it arrived.
 struct StickSample : contract::Joystick {
   wire::ParticipantId participant{};
   Duration waited{};  ///< From reception until the sample was handled.

@@ -7,7 +7,7 @@
 
 namespace adit::agent {
 
-/// What is known of the goal of a `goto` when it arrives, from the robot's map.
+/// The judgement of the goal of a `goto` when it arrives, from the robot's map.
 struct GoalReport {
   /// A reason from goal_occupied to goal_not_connected refuses the goal; goal_unseen does not; none: the
   /// robot can stand there.

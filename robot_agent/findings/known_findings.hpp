@@ -11,7 +11,7 @@
 
 namespace adit::agent {
 
-/// Which stations have which of this robot's findings on their disks. A station is known by its identity,
+/// The table of stations that have this robot's findings on their disks. A station is known by its identity,
 /// which outlives its process. Stored in the file `findings-known`: if a write is lost, its findings are only
 /// sent once more, which harms no station.
 class KnownFindings {

@@ -28,6 +28,7 @@ struct PlanJob {
   std::uint64_t generation{};  ///< Generation of the goal, for the caller.
   Time made{};
 };
+/// The result of one planning cycle.
 struct PlanAnswer {
   nav::Plan plan{};
   std::vector<Eigen::Vector2f> obstacles{};  ///< Not passable, odometry frame, m.

@@ -9,7 +9,7 @@
 
 namespace adit::agent {
 
-/// What the robot's own odometry says about one scan.
+/// The result of the robot's own odometry for one scan.
 struct OdometryReport {
   std::uint64_t stamp{};     ///< End of the sweep, driver's clock, ns.
   Pose3 T_local_driver{};    ///< The driver's odometry in the frame of this odometry.

@@ -4,9 +4,9 @@
 
 namespace adit::agent {
 
-/// What a merged map shows of one block of 4 x 4 x 4 voxels, from the submaps that saw it, added from the
-/// oldest to the newest. The rule is perception::VoxelImage's, for all 64 voxels at once: the newest wins,
-/// unless the two before it both say occupied.
+/// Merges one block of 4 x 4 x 4 voxels from the submaps that saw it, added from the oldest to the newest.
+/// The rule is perception::VoxelImage's, for all 64 voxels at once: the newest wins, unless the two before it
+/// both say occupied.
 class BlockVotes {
  public:
   void add(std::uint64_t known, std::uint64_t occupied) {

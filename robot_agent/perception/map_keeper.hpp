@@ -29,11 +29,11 @@ struct MapKeeperParams {
   BlockSourceParams blocks{};       ///< Without the robot's name and start.
 };
 
-/// What a robot knows of its map beside the open submap's grid: the submaps, their blocks at 0.2 m, and what
-/// each station has of them. It chooses the scans that enter the map. It belongs to the agent's context, so
-/// that a restart of a component loses nothing, and is stored on the disk, so that a restart of the agent
-/// loses at most what the last seconds changed. Submaps of earlier starts have their names and poses from
-/// then; they never move again. Runs on the command strand.
+/// The map of a robot beside the open submap's grid: the submaps, their blocks at 0.2 m, and what each
+/// station has of them. It chooses the scans that enter the map. It belongs to the agent's context, so that a
+/// restart of a component loses nothing, and is stored on the disk, so that a restart of the agent loses at
+/// most what the last seconds changed. Submaps of earlier starts have their names and poses from then; they
+/// never move again. Runs on the command strand.
 class MapKeeper {
  public:
   /// `disk` null: the map ends with this process.

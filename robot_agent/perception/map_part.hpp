@@ -25,7 +25,7 @@ struct MapJob {
   Time made{};
 };
 
-/// What a scan changed in the map.
+/// The changes of the map by one scan.
 struct MapStep {
   std::uint32_t submap{};  ///< The open one.
   /// Level, at a multiple of a block's edge on each axis; fixed since the submap was opened.

@@ -4,7 +4,7 @@
 
 namespace adit::agent {
 
-/// Whether a robot whose agent was started again knows that it is where it was (rule 7).
+/// The recognition of the surroundings after a restart of the agent (rule 7).
 ///
 /// Until a scan was compared with the stored keyframes, and after one that does not fit them, autonomous
 /// modes do not run. A robot that does not recognise its surroundings waits for `pose R X Y YAW`.

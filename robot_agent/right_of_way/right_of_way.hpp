@@ -25,7 +25,7 @@ struct RightOfWayParams {
   bool can_clear{};          ///< It has a router, and stays on the ground.
 };
 
-/// Which of two robots passes where both do not fit, and who makes way for it.
+/// Decides which of two robots passes where both do not fit, and makes way for the other one.
 ///
 /// A robot whose route leads through another one asks it, in its beacon, to make way; where both rank alike,
 /// the one whose name comes first passes. The other one moves only if its holder allowed it (rule 8) and its

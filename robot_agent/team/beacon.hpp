@@ -17,7 +17,7 @@ struct HeardBeacon {
   Duration period{1s};  ///< Time between its beacons, without the lost ones.
 };
 
-/// Why a beacon was refused.
+/// Reason to refuse a beacon.
 enum class BeaconFault : std::uint8_t {
   none,
   malformed,  ///< A number that is not finite or out of range, an invalid name, too many entries.
