@@ -47,7 +47,7 @@ std::vector<std::string> known_robots(const Options& options) {
     robots.clear();
     for (const Robot& robot : world.robots) robots.push_back(robot.name);
   };
-  client.watch();
+  client.follow();
   for (int i = 0; i < 5 && !answered; ++i)
     if (!client.wait(100)) break;
   return robots;

@@ -104,7 +104,7 @@ class Prompt {
       printed_ = true;
     };
     client_->notices();
-    client_->watch();
+    client_->follow();
   }
 
   int run(const Request& request, const std::string& line) {

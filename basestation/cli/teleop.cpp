@@ -62,7 +62,7 @@ int teleop(client::Connection& client, const Options& options, const std::string
   KeyStick keys;
   bool dead_man = false, stop_pressed = false, leaving = false;
   terminal.write(kInstructions);
-  client.watch();
+  client.follow();
   id = client.teleop(robot);
   auto next = Clock::now();
   while (!outcome) {

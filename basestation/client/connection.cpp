@@ -44,7 +44,6 @@ void Connection::stick(std::int64_t id, double vx, double vy, double wz) {
 void Connection::cancel(std::int64_t id) { send(line_of({{"cancel", id}})); }
 void Connection::hello() { send(line_of({{"hello", true}})); }
 void Connection::follow() { send(line_of({{"follow", true}})); }
-void Connection::watch() { send(line_of({{"watch", true}})); }
 void Connection::notices() { send(line_of({{"notices", true}})); }
 
 void Connection::map(std::uint64_t run, std::uint64_t revision, const std::optional<LookedAt>& look) {
@@ -76,7 +75,6 @@ void Connection::handle(const std::string& line) {
   in.read("wrong", refused);
   if (!wrong.empty()) return misunderstand("'" + wrong + "' does not fit");
   if (!refused.empty()) return misunderstand("it refuses a request: " + refused);
-  if (const auto world = object.find("snapshot"); world != object.end()) pass(world_from(*world), on_world);
   if (const auto world = object.find("world"); world != object.end()) {
     world_ = std::make_unique<WorldBuilder>();
     if (const auto started = world_->start(*world); !started) return misunderstand(started.error().text);

@@ -46,8 +46,6 @@ class Connection {
   void stick(std::int64_t id, double vx, double vy, double wz);
   void cancel(std::int64_t id);
   void hello();
-  /// Asks for snapshots at 5 Hz from now on.
-  void watch();
   /// Asks for the state whenever it changes: on_world is called with each.
   void follow();
   void notices();

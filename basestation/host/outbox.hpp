@@ -10,8 +10,7 @@ namespace adit::station::host {
 /// The queue of lines for one client of the station, in the order of their events.
 ///
 /// A reply is never dropped: a client with too many unread replies must be disconnected. Events are bounded:
-/// the oldest is dropped for a new one, and the client reads how many it missed. Only the newest snapshot is
-/// queued.
+/// the oldest is dropped for a new one, and the client reads how many it missed.
 class Outbox {
  public:
   static constexpr std::size_t kMaxReplyBytes = 4 << 20;
@@ -20,21 +19,18 @@ class Outbox {
   /// Queues a reply. Returns false if more than `kMaxReplyBytes` of replies are queued.
   [[nodiscard]] bool reply(std::string line);
   void event(std::string line);
-  void snapshot(std::string line);
   /// Counts events that were lost before they were queued here.
   void lost(std::size_t events) { missed_ += events; }
   /// Drops all queued lines.
   void clear();
 
-  /// The next line to send. `client_is_done`: the client has read all that was sent; a snapshot waits for
-  /// that, so that a busy client gets only the newest one.
-  std::optional<std::string> next(bool client_is_done);
+  /// The next line to send.
+  std::optional<std::string> next();
   bool empty() const { return waiting_.empty() && missed_ == 0; }
 
  private:
-  enum class Kind { reply, event, snapshot };
   struct Line {
-    Kind kind{};
+    bool is_event{};
     std::string text{};
   };
   std::deque<Line> waiting_{};

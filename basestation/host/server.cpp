@@ -31,7 +31,7 @@ using namespace std::chrono_literals;
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kSnapshotPeriodMs = 200;
+constexpr int kFollowedMs = 200;
 constexpr int kPendingMs = 20;
 constexpr auto kChangePeriod = 20ms, kMotionPeriod = 100ms;  // Shortest time between two differences.
 constexpr auto kSignOfLife = 400ms;   // Longest: a client counts a station silent that says nothing for 1 s.
@@ -184,7 +184,7 @@ void Server::answer(Client& client, const json& object) {
 bool Server::push(Client& client) {
   if (!client.socket.flush()) return false;
   while (!client.socket.has_backlog()) {
-    const auto line = client.outbox.next(client.socket.is_read());
+    const auto line = client.outbox.next();
     if (!line) return !client.cut_off;
     if (!client.socket.send_line(*line)) return false;
   }
@@ -261,14 +261,13 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& lin
     return found != request.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
   };
   if (request.contains("hello")) return answer(client, {{"hello", hello_}});
-  if (request.contains("watch")) return void(client.watches = true);
   if (request.contains("follow")) {
     if (!std::exchange(client.follows, true) && followers_++ == 0) {
       newest_.reset();  // It was not followed for a while and is old.
       newest_world_.reset();
     }
     client.sent.reset();  // It gets the whole state, also if it asks again.
-    return void(ask_world());
+    return ask_world();
   }
   if (request.contains("notices")) return void(client.notices = true);
   if (const auto name = request.find("front_end"); name != request.end()) {
@@ -354,17 +353,12 @@ void Server::deliver() {
     lost = std::exchange(lost_, 0);
   }
   for (const Reply& next : replies) deliver(next);
-  const bool snapshot = world && std::exchange(snapshot_asked_, false);
-  const std::string text = snapshot ? line_of({{"snapshot", json_of(*world)}}) : "";
   if (world && followers_ > 0) {
     newest_ = std::make_shared<const EncodedWorld>(encoded(*world));
     newest_world_ = std::move(world);
   }
-  for (auto& [number, client] : clients_) {
-    if (client.cut_off) continue;
-    if (lost > 0) client.outbox.lost(lost);
-    if (snapshot && client.watches) client.outbox.snapshot(text);
-  }
+  for (auto& [number, client] : clients_)
+    if (!client.cut_off) client.outbox.lost(lost);
 }
 
 void Server::changed(const Station& station) {
@@ -379,8 +373,8 @@ void Server::take(World world) {
   wake();
 }
 
-bool Server::ask_world() {
-  return strand_->post([this] { take(world_of(*station_)); });
+void Server::ask_world() {
+  strand_->post([this] { take(world_of(*station_)); });
 }
 
 bool Server::follow(Client& client, Clock::time_point now) {
@@ -419,20 +413,18 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
   strand_ = &strand;
   hello_ = hello;
   run_ = static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
-  auto next_snapshot = Clock::now(), next_sign = Clock::now();
+  auto next_sign = Clock::now();
   bool pending = false;  // A client that follows is to receive something soon.
   while (!ending_) {
     std::vector<pollfd> fds{{stop_fd, POLLIN, 0}, {wake_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}};
     std::vector<std::uint64_t> numbers;
-    bool watched = false;
     for (const auto& [number, client] : clients_) {
       const short events =
           static_cast<short>((client.cut_off ? 0 : POLLIN) | (client.socket.has_backlog() ? POLLOUT : 0));
       fds.push_back({client.socket.fd(), events, 0});
       numbers.push_back(number);
-      watched = watched || client.watches;
     }
-    const int limit = pending ? kPendingMs : watched || followers_ > 0 ? kSnapshotPeriodMs : -1;
+    const int limit = pending ? kPendingMs : followers_ > 0 ? kFollowedMs : -1;
     if (::poll(fds.data(), fds.size(), limit) < 0 && errno != EINTR) return;
     if (fds[0].revents != 0) return;
     if (fds[1].revents != 0) {
@@ -456,12 +448,6 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
     for (auto& [number, client] : clients_)
       if (!push(client)) gone.push_back(number);
     for (const std::uint64_t number : gone) drop(number);
-    if (now >= next_snapshot) {
-      const bool wanted =
-          std::any_of(clients_.begin(), clients_.end(), [](const auto& c) { return c.second.watches; });
-      if (wanted && !snapshot_asked_) snapshot_asked_ = ask_world();
-      next_snapshot = now + std::chrono::milliseconds(kSnapshotPeriodMs - 10);
-    }
     if (followers_ > 0 && now >= next_sign) {
       ask_world();
       next_sign = now + kSignOfLife;

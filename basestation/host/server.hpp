@@ -25,7 +25,6 @@ namespace adit::station::host {
 ///     {"id": 1, "do": "take r1"}       -> {"id": 1, "begun": true}, then {"id": 1, "outcome": {...}}
 ///     {"id": 2, "teleop": "r1"}        -> the same; {"id": 2, "stick": [vx, vy, wz]} drives
 ///     {"cancel": 1}                    ends the request with the id
-///     {"watch": true}                  -> {"snapshot": {...}} at 5 Hz, only the newest
 ///     {"follow": true}                 -> {"world": {...}}, then {"delta": {...}}, see below
 ///     {"notices": true}                -> {"notice": {...}} on each notice
 ///     {"map": {"run": N, "revision": M, "look": [x, y, radius]}}
@@ -77,7 +76,6 @@ class Server {
     std::string folder{};  ///< To which files in its command lines are relative; empty: the station's own.
     pid_t pid{};
     bool cut_off{false};  ///< Only its unread lines are still sent.
-    bool watches{false};
     bool follows{false};
     std::shared_ptr<const EncodedWorld> sent{};  ///< The state that a client that follows has; null: none.
     std::chrono::steady_clock::time_point sent_at{};
@@ -116,8 +114,8 @@ class Server {
   void cut_off(Client& client, const std::string& why);
   void cancel_all(Client& client);
   void drop(std::uint64_t number);
-  /// Asks the strand for the state; returns false if it has too much to do.
-  bool ask_world();
+  /// Asks the strand for the state, unless it has too much to do.
+  void ask_world();
   void take(World world);
   /// Sends a client that follows what it does not have, if that is due. Returns whether something is left.
   bool follow(Client& client, std::chrono::steady_clock::time_point now);
@@ -132,7 +130,6 @@ class Server {
   std::map<std::uint64_t, Client> clients_{};
   std::uint64_t next_client_{1};
   std::atomic<bool> ending_{false};
-  bool snapshot_asked_{false};
   std::atomic<int> followers_{0};
   std::shared_ptr<const EncodedWorld> newest_{};  ///< The state now, for clients that follow.
   std::optional<World> newest_world_{};           ///< The same, with its notices.

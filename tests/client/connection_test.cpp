@@ -81,7 +81,7 @@ TEST_F(ConnectionTest, GetsAnOutcomeThatWasWrittenBeforeTheStationEnded) {
   connection_->execute("list");
   station_writes("{\"id\":1,\"outcome\":{\"exit\":0}}\n");
   station_.reset();
-  connection_->watch();  // fails
+  connection_->follow();  // fails
   EXPECT_FALSE(connection_->wait(1000));
   ASSERT_TRUE(outcome);
   EXPECT_EQ(outcome->exit_code, 0);
@@ -90,14 +90,14 @@ TEST_F(ConnectionTest, GetsAnOutcomeThatWasWrittenBeforeTheStationEnded) {
 TEST_F(ConnectionTest, SaysWhatItDoesNotUnderstandAndGoesOn) {
   int worlds = 0;
   connection_->on_world = [&](const World&) { ++worlds; };
-  for (const char* odd : {"half a line of", "[1,2]", "{\"snapshot\":5}", "{\"id\":\"x\"}", "{\"missed\":-3}",
-                          "{\"snapshot\":{\"robots\":[{\"robot\":5}]}}", "{\"map\":{\"resolution\":0}}"}) {
+  for (const char* odd : {"half a line of", "[1,2]", "{\"world\":5}", "{\"id\":\"x\"}", "{\"missed\":-3}",
+                          "{\"world\":{\"robots\":[{\"robot\":5}]}}", "{\"map\":{\"resolution\":0}}"}) {
     station_writes(std::string(odd) + "\n");
     EXPECT_TRUE(connection_->wait(1000)) << odd;
     EXPECT_NE(connection_->not_understood(), "") << odd;
   }
   EXPECT_EQ(worlds, 0);
-  station_writes("{\"snapshot\":{\"robots\":[{\"robot\":\"r1\"}]},\"of_a_later_version\":1}\n");
+  station_writes("{\"world\":{\"robots\":[{\"robot\":\"r1\"}]},\"of_a_later_version\":1}\n");
   EXPECT_TRUE(connection_->wait(1000));
   EXPECT_EQ(worlds, 1);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a station could send to a front end, as libFuzzer makes it up: hello, snapshots, deltas, notices,
+// What a station could send to a front end, as libFuzzer makes it up: hello, worlds, deltas, notices,
 // pieces of the map, answers, and reports. Built by tools/fuzz.sh. The first byte chooses the reader.
 #include <sys/socket.h>
 
@@ -82,7 +82,7 @@ void write_seeds(const std::string& folder) {
   later.robots[0].x = 3.0F;
   later.robots.pop_back();
   later.notices.push_back({{.code = "idle", .robot = "r2"}, 4});
-  write('c', line_of({{"snapshot", json_of(world)}}) + "\n");
+  write('c', line_of({{"world", json_of(world)}}) + "\n");
   write('c', whole);
   write('c', whole + line_of({{"delta", difference(encoded(world), encoded(later)).json}}) + "\n");
   write('c', R"({"hello":{"station":"op1","domain":77,"link":"mesh_500k","interfaces":["lo"],"peers":[]}})"

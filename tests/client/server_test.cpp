@@ -141,15 +141,14 @@ TEST_F(ServerTest, OneClientTooManyReadsWhyItIsNotServed) {
   EXPECT_THAT(late.next("cut_off").dump(), HasSubstr("32 programs are connected"));
 }
 
-TEST_F(ServerTest, AClientThatSleptReadsTheNewestSnapshotAlone) {
+TEST_F(ServerTest, AClientThatSleptReadsOneDelta) {
   Talk sleeper(path()), reader(path());
-  sleeper.say({{"watch", true}});
-  sleeper.say({{"hello", true}});
-  ASSERT_FALSE(sleeper.next("hello").is_null());
-  reader.say({{"watch", true}});
-  for (int i = 0; i < 7; ++i) ASSERT_FALSE(reader.next("snapshot").is_null());
-  EXPECT_LE(sleeper.arrived("snapshot"), 1) << "7 went out to who read them";
-  ASSERT_FALSE(sleeper.next("snapshot").is_null()) << "then it gets what is new";
+  sleeper.say({{"follow", true}});
+  ASSERT_FALSE(sleeper.next("world").is_null());
+  reader.say({{"follow", true}});
+  for (int i = 0; i < 4; ++i) ASSERT_FALSE(reader.next("delta").is_null());
+  EXPECT_LE(sleeper.arrived("delta"), 1) << "4 were sent to the client that read them";
+  ASSERT_FALSE(sleeper.next("delta").is_null()) << "it then gets what is new";
 }
 
 TEST_F(ServerTest, APlaceToLookAtThatDoesNotFitIsRefused) {
@@ -290,24 +289,12 @@ TEST(Outbox, KeepsRepliesInOrderAndDropsTheOldestEvents) {
   EXPECT_TRUE(box.reply("r1"));
   for (std::size_t i = 0; i < Outbox::kMaxEvents + 3; ++i) box.event("e" + std::to_string(i));
   EXPECT_TRUE(box.reply("r2"));
-  EXPECT_EQ(box.next(true), "{\"missed\":3}");
-  EXPECT_EQ(box.next(true), "r1");
-  for (std::size_t i = 3; i < Outbox::kMaxEvents + 3; ++i) EXPECT_EQ(box.next(true), "e" + std::to_string(i));
-  EXPECT_EQ(box.next(true), "r2");
-  EXPECT_EQ(box.next(true), std::nullopt);
+  EXPECT_EQ(box.next(), "{\"missed\":3}");
+  EXPECT_EQ(box.next(), "r1");
+  for (std::size_t i = 3; i < Outbox::kMaxEvents + 3; ++i) EXPECT_EQ(box.next(), "e" + std::to_string(i));
+  EXPECT_EQ(box.next(), "r2");
+  EXPECT_EQ(box.next(), std::nullopt);
   EXPECT_TRUE(box.empty());
-}
-
-TEST(Outbox, OfSnapshotsTheNewestWaitsForAClientThatReads) {
-  Outbox box;
-  box.snapshot("s1");
-  box.event("e1");
-  box.snapshot("s2");
-  EXPECT_EQ(box.next(false), "e1");
-  EXPECT_EQ(box.next(false), std::nullopt);
-  box.snapshot("s3");
-  EXPECT_EQ(box.next(true), "s3");
-  EXPECT_EQ(box.next(true), std::nullopt);
 }
 
 TEST(Outbox, SaysWhenRepliesAreTooMany) {

@@ -43,7 +43,8 @@ class Dashboard {
       if (others_.size() > 30) others_.pop_front();
       dirty_ = true;
     };
-    client_.watch();
+    client_.notices();
+    client_.follow();
   }
 
   /// Returns false if the connection to the station was lost.

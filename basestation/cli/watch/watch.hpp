@@ -5,7 +5,7 @@
 
 namespace adit::station::cli {
 
-/// Runs the live dashboard: redraws at 5 Hz and processes keys until q or Ctrl-C. Returns the exit code.
+/// Runs the live dashboard: redraws after each change and processes keys until q or Ctrl-C. Returns the exit code.
 int watch(client::Connection& client, const Options& options);
 
 }  // namespace adit::station::cli
