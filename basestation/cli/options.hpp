@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "basestation/client/options.hpp"
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 
 namespace adit::station::cli {
 

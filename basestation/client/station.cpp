@@ -18,7 +18,7 @@
 #include "basestation/client/launch.hpp"
 #include "basestation/client/paths.hpp"
 #include "basestation/client/stop.hpp"
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 
 namespace adit::station::client {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "basestation/client/connection.hpp"
 #include "basestation/client/paths.hpp"
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 #include "core/command/words.hpp"
 
 extern char** environ;

@@ -18,7 +18,7 @@
 #include "basestation/gui/bridge/gl_probe.hpp"
 #include "basestation/gui/bridge/qt_station.hpp"
 #include "basestation/gui/window.hpp"
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 #include "core/config/usage.hpp"
 
 namespace adit::gui {

@@ -7,7 +7,7 @@
 
 #include "basestation/client/paths.hpp"
 #include "basestation/host/identity.hpp"
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 #include "core/store/file_disk.hpp"
 #include "core/wire/fastdds/fastdds_participant.hpp"
 #include "core/wire/link_file.hpp"

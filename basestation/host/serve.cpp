@@ -11,7 +11,7 @@
 #include "basestation/client/paths.hpp"
 #include "basestation/host/live_station.hpp"
 #include "basestation/host/server.hpp"
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 
 namespace adit::station::host {
 namespace {

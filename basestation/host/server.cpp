@@ -17,7 +17,7 @@
 
 #include "basestation/client/connection.hpp"
 #include "basestation/host/snapshot.hpp"
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/model/json_reader.hpp"
 #include "core/command/parse.hpp"

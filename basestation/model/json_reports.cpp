@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 #include "basestation/model/json_fields.hpp"
 #include "core/command/vocabulary.hpp"
 

@@ -8,6 +8,12 @@
 
 namespace adit::station {
 
+/// Exit codes of the programs, and of a command's outcome.
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitRefused = 1;
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitNoAnswer = 3;
+
 /// What a robot answered to a command, or that it did not.
 struct RobotAnswer {
   std::string robot{};
@@ -21,7 +27,7 @@ struct RobotAnswer {
 
 /// How a command line ended, as a front end reads it.
 struct CommandOutcome {
-  int exit_code{};                     ///< 0: done, 1: refused, 2: wrong usage, 3: no answer.
+  int exit_code{};                     ///< kExitDone, ...
   std::string text{};                  ///< Readable result; lines end in a newline.
   std::string error{};                 ///< Readable refusals and reasons; lines end in a newline.
   std::string json{"{}"};              ///< The same for scripts, as one JSON object.

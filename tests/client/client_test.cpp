@@ -9,7 +9,7 @@
 #include <future>
 #include <mutex>
 
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 #include "perception/map/export/map_file.hpp"
 #include "tests/client/server_bench.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/model/json_reports.hpp"
 #include "core/time/random.hpp"

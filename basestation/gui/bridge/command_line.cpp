@@ -5,7 +5,7 @@
 
 #include "basestation/gui/bridge/control.hpp"
 #include "basestation/gui/bridge/typed_line.hpp"
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 
 namespace adit::gui {
 

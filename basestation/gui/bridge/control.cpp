@@ -9,7 +9,7 @@
 
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/gui/scene/mark_list.hpp"
-#include "basestation/model/exit_code.hpp"
+#include "basestation/model/outcome.hpp"
 #include "basestation/model/numbering.hpp"
 
 namespace adit::gui {
