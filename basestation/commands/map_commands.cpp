@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "basestation/map/ground_area.hpp"
 #include "basestation/map/merged_map.hpp"
 #include "basestation/map/status.hpp"
 #include "basestation/report/table.hpp"
@@ -111,13 +112,15 @@ MapPicture MapCommands::picture() const {
       if (view->size.length > 0) robot.length = view->size.length;
       if (view->size.width > 0) robot.width = view->size.width;
     }
-    if (chunks.robots().contains(name)) robot.label += ", saw " + fixed(chunks.area(name), 0) + " m2";
+    if (chunks.robots().contains(name))
+      robot.label += ", saw " + fixed(ground_area(chunks, strand_.now(), name).m2, 0) + " m2";
     picture.robots.push_back(std::move(robot));
   }
   std::uint64_t bytes = 0;
   for (const auto& [name, robot] : chunks.robots()) bytes += robot.bytes;
-  picture.subtitle = fixed(chunks.area(), 0) + " m2 by " + std::to_string(chunks.robots().size()) +
-                     " robots, " + fixed(static_cast<double>(bytes) / 1000.0, 0) + " kB received";
+  picture.subtitle = fixed(ground_area(chunks, strand_.now()).m2, 0) + " m2 by " +
+                     std::to_string(chunks.robots().size()) + " robots, " +
+                     fixed(static_cast<double>(bytes) / 1000.0, 0) + " kB received";
   return picture;
 }
 

@@ -12,7 +12,7 @@ constexpr Duration kHeardNow = 10s;  // A carrier sends nothing of a robot that 
 
 constexpr std::uint32_t kCoarse = perception::BlockUpdate::kCoarseRevision;
 
-bool is_heard(const ChunkStore::Robot& robot, std::optional<Time> now) {
+bool is_heard(const ChunkStore::RobotMap& robot, std::optional<Time> now) {
   return robot.heard && now && *now - *robot.heard < kHeardNow;
 }
 
@@ -28,12 +28,7 @@ void ChunkStore::set_now(std::optional<Time> now) {
   now_ = now ? clock(*now) : 0;
 }
 
-std::optional<Duration> ChunkStore::age(const Block& block, Time now) const {
-  if (block.received == 0 || !begun_) return std::nullopt;
-  return std::max<Duration>(Duration{}, now - *begun_ - (block.received - 1) * kTick);
-}
-
-void ChunkStore::put(Robot& robot, Submap& submap, const perception::SubmapKey& key,
+void ChunkStore::put(RobotMap& robot, Submap& submap, const perception::SubmapKey& key,
                      const perception::BlockUpdate& update, bool carried) {
   const auto [found, added] = submap.blocks.try_emplace(update.block.index);
   Block& block = found->second;
@@ -58,7 +53,7 @@ void ChunkStore::put(Robot& robot, Submap& submap, const perception::SubmapKey& 
   ++revision_;
 }
 
-void ChunkStore::put(Robot& robot, Submap& submap, const perception::SubmapPose& pose, bool carried) {
+void ChunkStore::put(RobotMap& robot, Submap& submap, const perception::SubmapPose& pose, bool carried) {
   if (submap.T_map_submap) robot.digest.remove(pose.key, submap.pose_revision);
   submap.T_map_submap = pose.T_map_submap;
   submap.pose_revision = pose.revision;
@@ -71,8 +66,8 @@ void ChunkStore::note_waiting(const std::string& robot, std::uint32_t waiting) {
   if (const auto found = robots_.find(robot); found != robots_.end()) found->second.waiting = waiting;
 }
 
-ChunkStore::Robot* ChunkStore::count_carried(const std::string& carrier, const std::string& robot,
-                                             std::size_t bytes, std::optional<Time> now) {
+ChunkStore::RobotMap* ChunkStore::count_carried(const std::string& carrier, const std::string& robot,
+                                                std::size_t bytes, std::optional<Time> now) {
   if (!robots_.contains(robot)) {
     const auto carried_only = std::count_if(robots_.begin(), robots_.end(),
                                             [](const auto& entry) { return entry.second.pieces == 0; });
@@ -80,7 +75,7 @@ ChunkStore::Robot* ChunkStore::count_carried(const std::string& carrier, const s
         static_cast<std::size_t>(carried_only) >= params_.max_carried_robots)
       return nullptr;
   }
-  Robot& from = robots_[robot];
+  RobotMap& from = robots_[robot];
   if (!from.carriers.contains(carrier) && from.carriers.size() >= params_.max_carriers)
     from.carriers.erase(
         std::min_element(from.carriers.begin(), from.carriers.end(),
@@ -94,7 +89,7 @@ ChunkStore::Robot* ChunkStore::count_carried(const std::string& carrier, const s
   return &from;
 }
 
-bool ChunkStore::note_carried(Robot* robot, const std::string& carrier, std::size_t newer,
+bool ChunkStore::note_carried(RobotMap* robot, const std::string& carrier, std::size_t newer,
                               std::size_t refused) {
   if (robot != nullptr) robot->carriers.at(carrier).parts += newer;
   refused_carried_ += refused;
@@ -103,7 +98,7 @@ bool ChunkStore::note_carried(Robot* robot, const std::string& carrier, std::siz
 
 bool ChunkStore::take_carried(const std::string& carrier, perception::MapPiece& piece, std::size_t bytes,
                               std::optional<Time> now) {
-  Robot* robot = count_carried(carrier, piece.key.robot, bytes, now);
+  RobotMap* robot = count_carried(carrier, piece.key.robot, bytes, now);
   Submap* into = robot != nullptr ? submap(piece.key.robot, piece.key) : nullptr;
   std::size_t refused = into != nullptr ? 0 : piece.blocks.size();
   std::erase_if(piece.blocks, [&](const perception::BlockUpdate& update) {
@@ -128,7 +123,7 @@ bool ChunkStore::take_carried(const std::string& carrier, perception::MapPiece& 
 bool ChunkStore::take_carried(const std::string& carrier, perception::SubmapPoses& poses, std::size_t bytes,
                               std::optional<Time> now) {
   const std::string name = poses.poses.front().key.robot;
-  Robot* robot = count_carried(carrier, name, bytes, now);
+  RobotMap* robot = count_carried(carrier, name, bytes, now);
   std::size_t refused = 0;
   std::erase_if(poses.poses, [&](const perception::SubmapPose& pose) {
     Submap* into = robot != nullptr ? submap(name, pose.key) : nullptr;

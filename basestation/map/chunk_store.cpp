@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/map/chunk_store.hpp"
 
-#include <algorithm>
-
-#include "basestation/map/ground_columns.hpp"
-
 namespace adit::station {
 namespace {
 
@@ -63,7 +59,7 @@ bool ChunkStore::count(const std::string& robot, std::size_t bytes, std::uint32_
                        std::optional<Time> now) {
   if (!robots_.contains(robot) && robots_.size() >= params_.max_robots && !(now && make_room(robot)))
     return false;
-  Robot& from = robots_[robot];
+  RobotMap& from = robots_[robot];
   from.bytes += bytes;
   ++from.pieces;
   from.waiting = waiting;
@@ -110,26 +106,6 @@ bool ChunkStore::take(const std::string& robot, const perception::SubmapPoses& p
     }
   }
   return complete;
-}
-
-double ChunkStore::area(const std::string& robot) const {
-  constexpr double kCell = CoarseBlock::kVoxel;
-  std::vector<std::pair<std::int32_t, std::int32_t>> cells;
-  for (const auto& [name, from] : robots_) {
-    if (!robot.empty() && name != robot) continue;
-    for (const auto& [key, submap] : from.submaps) {
-      for_each_column(submap,
-                      [&cells](std::int32_t x, std::int32_t y, const Block&) { cells.emplace_back(x, y); });
-      // Heights of one submap repeat its columns: what is known twice is dropped before it grows.
-      if (cells.size() > 1'000'000) {
-        std::sort(cells.begin(), cells.end());
-        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-      }
-    }
-  }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return static_cast<double>(cells.size()) * kCell * kCell;
 }
 
 }  // namespace adit::station

@@ -55,7 +55,8 @@ class ChunkStore {
     std::optional<Time> heard{};  ///< Last piece; nothing: all are from before this start of the station.
     std::uint64_t last{};         ///< Rises with each piece of any carrier.
   };
-  struct Robot {
+  /// One robot's map.
+  struct RobotMap {
     std::map<perception::SubmapKey, Submap> submaps{};
     std::size_t blocks{};
     std::uint64_t bytes{};  ///< Content of pieces received.
@@ -94,15 +95,13 @@ class ChunkStore {
                     std::optional<Time> now);
   /// Notes how many parts a robot has still to send, if anything came from it.
   void note_waiting(const std::string& robot, std::uint32_t waiting);
-  /// Age of a block by the clock of this station; nothing: unknown.
-  std::optional<Duration> age(const Block& block, Time now) const;
   /// The time as Block::received has it; 0 before the first piece.
   std::uint32_t clock(Time now) const;
 
   /// Forgets everything.
   void clear();
 
-  const std::map<std::string, Robot>& robots() const { return robots_; }
+  const std::map<std::string, RobotMap>& robots() const { return robots_; }
   std::size_t blocks() const { return blocks_; }
   /// Number of robots that were forgotten to make room, since the start or clear().
   std::uint64_t evicted() const { return evicted_; }
@@ -113,26 +112,24 @@ class ChunkStore {
   std::uint64_t refused_carried() const { return refused_carried_; }
   /// Rises with each block or pose that changed.
   std::uint64_t revision() const { return revision_; }
-  /// Area of the ground seen, by robot; "" for all: columns of 0.2 m of which anything is known, m2.
-  double area(const std::string& robot = {}) const;
 
  private:
   /// Forgets a robot that was not heard since the start, other than this one. False: there is none.
   bool make_room(const std::string& robot);
   Submap* submap(const std::string& robot, const perception::SubmapKey& key);
   /// Stores a block that is newer, or adds one in voxels of 0.4 m to what is known in such.
-  void put(Robot& robot, Submap& submap, const perception::SubmapKey& key,
+  void put(RobotMap& robot, Submap& submap, const perception::SubmapKey& key,
            const perception::BlockUpdate& update, bool carried);
-  void put(Robot& robot, Submap& submap, const perception::SubmapPose& pose, bool carried);
+  void put(RobotMap& robot, Submap& submap, const perception::SubmapPose& pose, bool carried);
   /// The robot of a carried piece, and its carrier's count. Null: no room.
-  Robot* count_carried(const std::string& carrier, const std::string& robot, std::size_t bytes,
-                       std::optional<Time> now);
+  RobotMap* count_carried(const std::string& carrier, const std::string& robot, std::size_t bytes,
+                          std::optional<Time> now);
   /// Counts what came of a carrier's piece. Returns whether nothing was refused.
-  bool note_carried(Robot* robot, const std::string& carrier, std::size_t newer, std::size_t refused);
+  bool note_carried(RobotMap* robot, const std::string& carrier, std::size_t newer, std::size_t refused);
   void set_now(std::optional<Time> now);
 
   ChunkStoreParams params_;
-  std::map<std::string, Robot> robots_{};
+  std::map<std::string, RobotMap> robots_{};
   std::size_t blocks_{};
   std::size_t carried_blocks_{};
   std::uint64_t refused_{}, evicted_{}, refused_carried_{}, carried_pieces_{};

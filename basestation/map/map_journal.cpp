@@ -47,7 +47,7 @@ void add_batch(store::Bytes& out, std::span<const std::uint8_t> content) {
   out.insert(out.end(), content.begin(), content.end());
 }
 
-store::Bytes whole_file(std::uint32_t start, const std::vector<JournalPiece>& pieces) {
+store::Bytes complete_file(std::uint32_t start, const std::vector<JournalPiece>& pieces) {
   store::Bytes out = header(start);
   store::Packer content;
   for (const JournalPiece& piece : pieces) add_piece(content, piece);
@@ -184,7 +184,7 @@ void MapJournal::begin(std::uint32_t start, const std::vector<JournalPiece>& pie
   if (!disk_) return;
   waiting_.clear();
   waiting_bytes_ = 0;
-  begin_ = whole_file(start, pieces);
+  begin_ = complete_file(start, pieces);
   if (!writing_) replace();
 }
 
@@ -203,19 +203,19 @@ void MapJournal::schedule(Duration delay) {
   timer_ = home_.after(delay, [this] { write(); });
 }
 
-void MapJournal::add(JournalPiece piece, std::function<void()> kept) {
-  if (!disk_) return kept();
+void MapJournal::add(JournalPiece piece, std::function<void()> stored) {
+  if (!disk_) return stored();
   if (waiting_bytes_ + piece.data.size() > params_.max_waiting) return;
   waiting_bytes_ += piece.data.size();
-  waiting_.push_back({std::move(piece), std::move(kept)});
+  waiting_.push_back({std::move(piece), std::move(stored)});
   if (!writing_ && !timer_.active()) schedule(params_.period);
 }
 
-void MapJournal::end_start(std::function<void()> kept) {
-  if (!disk_ || ended_ == Ended::written) return kept();
+void MapJournal::end_start(std::function<void()> stored) {
+  if (!disk_ || ended_ == Ended::written) return stored();
   if (ended_ == Ended::waiting) return;
   ended_ = Ended::waiting;
-  waiting_.push_back({mark(""), std::move(kept)});
+  waiting_.push_back({mark(""), std::move(stored)});
   if (!writing_ && !timer_.active()) schedule(params_.period);
 }
 
@@ -255,7 +255,7 @@ void MapJournal::write_again() {
   batch->kind = Batch::Kind::replace;
   batch->max_bytes = params_.max_bytes / 2;
   batch->pack = [start = ended_ != Ended::no ? 0 : start_, pack = copy_map_()] {
-    return whole_file(start, pack());
+    return complete_file(start, pack());
   };
   batch->pieces = std::exchange(waiting_, {});
   waiting_bytes_ = 0;
@@ -286,14 +286,14 @@ void MapJournal::written(const Batch& batch) {
   } else if (done && removal) {
     disk_.reset();
     trouble_("the map is not kept on the disk: " + useless_);
-    keep(batch.pieces);
-    keep(std::exchange(waiting_, {}));
+    report_stored(batch.pieces);
+    report_stored(std::exchange(waiting_, {}));
     return;
   } else if (done) {
     bytes_ = batch.bytes.size() + (batch.kind == Batch::Kind::append ? bytes_ : 0);
     for (const Waiting& waiting : batch.pieces)
       if (is_mark(waiting.piece)) ended_ = Ended::written;
-    keep(batch.pieces);
+    report_stored(batch.pieces);
   } else if (!batch.ran) {
     for (const Waiting& waiting : batch.pieces) waiting_bytes_ += waiting.piece.data.size();
     waiting_.insert(waiting_.begin(), batch.pieces.begin(), batch.pieces.end());  // Its turn comes again.
@@ -308,8 +308,8 @@ void MapJournal::written(const Batch& batch) {
   schedule(removal ? params_.retry : params_.period);
 }
 
-void MapJournal::keep(const std::vector<Waiting>& pieces) {
-  for (const Waiting& waiting : pieces) waiting.kept();
+void MapJournal::report_stored(const std::vector<Waiting>& pieces) {
+  for (const Waiting& waiting : pieces) waiting.stored();
 }
 
 }  // namespace adit::station

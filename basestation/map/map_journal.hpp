@@ -27,7 +27,7 @@ struct MapJournalParams {
   Duration retry{5s};  ///< Between two attempts to remove a file that is of no use.
 };
 
-/// What the disk had of the map.
+/// The content of a journal's file.
 struct LoadedJournal {
   std::uint32_t start{};  ///< The start under which all of it was acknowledged; 0: it is not complete.
   std::vector<JournalPiece> pieces{};  ///< In the order of their arrival.
@@ -41,9 +41,9 @@ struct LoadedJournal {
 ///
 /// A piece is to be acknowledged once it is written. A file that would become too long is written again from
 /// the present map, in parallel to the home strand. Where writing is impossible (the disk is full, or the
-/// file stays longer than half of its limit), the file is removed and pieces are kept in memory from then on:
+/// file stays longer than half of its limit), the file is removed and pieces stay in memory from then on:
 /// then the next start of the station is a new one, and robots send all again. While the file can be neither
-/// written nor removed, no piece is kept.
+/// written nor removed, no piece is stored.
 class MapJournal {
  public:
   /// Packs a copy of the map, on any thread.
@@ -58,9 +58,9 @@ class MapJournal {
   MapJournal& operator=(const MapJournal&) = delete;
 
   /// Reads the file; one that is damaged is copied aside. Call begin() after it, or resume() if the file is
-  /// whole.
+  /// complete.
   LoadedJournal load();
-  /// Begins a new file with these pieces; pieces that wait for the disk are not kept.
+  /// Begins a new file with these pieces; pieces that wait for the disk are dropped.
   void begin(std::uint32_t start, const std::vector<JournalPiece>& pieces);
   /// Copies the file aside, before it is replaced; returns the copy's name, empty if there is none.
   std::string copy_aside();
@@ -69,13 +69,13 @@ class MapJournal {
     start_ = start;
     bytes_ = bytes;
   }
-  /// Adds a piece; calls `kept` when it is written, or the map is in memory only. One for which there is no
-  /// room is not kept, and comes again.
-  void add(JournalPiece piece, std::function<void()> kept);
+  /// Adds a piece; calls `stored` when it is written, or the map is in memory only. One for which there is no
+  /// room is dropped, and comes again.
+  void add(JournalPiece piece, std::function<void()> stored);
   /// The next start of the station is a new one, as something will be acknowledged that is not here. Calls
-  /// `kept` when that is written, or the map is in memory only; not while it is being written: then what is
+  /// `stored` when that is written, or the map is in memory only; not while it is being written: then what is
   /// to be acknowledged comes again.
-  void end_start(std::function<void()> kept);
+  void end_start(std::function<void()> stored);
   /// Forgets what was added of a robot so far; the next start of the station is a new one.
   void forget(const std::string& robot);
 
@@ -84,7 +84,7 @@ class MapJournal {
  private:
   struct Waiting {
     JournalPiece piece{};
-    std::function<void()> kept{};
+    std::function<void()> stored{};
   };
   /// Whether the file says that its start has ended.
   enum class Ended { no, waiting, written };
@@ -95,7 +95,7 @@ class MapJournal {
   void write_again();
   void start(const std::shared_ptr<Batch>& batch);
   void written(const Batch& batch);
-  static void keep(const std::vector<Waiting>& pieces);
+  static void report_stored(const std::vector<Waiting>& pieces);
 
   MapJournalParams params_;
   std::shared_ptr<store::Disk> disk_;  ///< Null: in memory only.

@@ -16,7 +16,7 @@ constexpr std::size_t kLongFile = std::size_t{512} << 10;
 constexpr std::size_t kBytesOfBlock = 10;
 
 /// What the robot itself sent of its map, or what carriers did.
-void add_pieces(const std::string& name, const ChunkStore::Robot& robot, bool carried,
+void add_pieces(const std::string& name, const ChunkStore::RobotMap& robot, bool carried,
                 std::vector<JournalPiece>& out) {
   const auto latest =
       std::max_element(robot.carriers.begin(), robot.carriers.end(),

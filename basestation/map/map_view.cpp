@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "basestation/map/merged_map.hpp"
-#include "basestation/map/tile_ages.hpp"
 
 namespace adit::station {
 namespace {

@@ -9,7 +9,7 @@
 
 namespace adit::station {
 
-/// What is drawn on the map. Map frame, m.
+/// The content of a picture of the map. Map frame, m.
 struct MapPicture {
   struct Robot {
     std::string name{};

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/map/status.hpp"
 
-#include "basestation/map/area_ages.hpp"
+#include "basestation/map/ground_area.hpp"
 #include "basestation/report/table.hpp"
 
 namespace adit::station {
 namespace {
 
-std::size_t waiting_for_pose(const ChunkStore::Robot& robot) {
+std::size_t waiting_for_pose(const ChunkStore::RobotMap& robot) {
   std::size_t out = 0;
   for (const auto& [key, submap] : robot.submaps) out += submap.T_map_submap ? 0 : 1;
   return out;
@@ -15,13 +15,13 @@ std::size_t waiting_for_pose(const ChunkStore::Robot& robot) {
 
 /// Share of the robot's map that is here in its newest state, at least, [0, 1]: `waiting` is that of the
 /// station which lacks most.
-double share(const ChunkStore::Robot& robot) {
+double share(const ChunkStore::RobotMap& robot) {
   const auto here = static_cast<double>(robot.blocks);
   return here > 0.0 ? here / (here + static_cast<double>(robot.waiting)) : 0.0;
 }
 
 /// Who carried parts of this robot's map here; empty: no robot did.
-std::string carried_text(const std::string& name, const ChunkStore::Robot& robot, Time now) {
+std::string carried_text(const std::string& name, const ChunkStore::RobotMap& robot, Time now) {
   std::string by;
   for (const auto& [carrier, carried] : robot.carriers)
     by += (by.empty() ? "" : ", ") + carrier +
@@ -31,7 +31,7 @@ std::string carried_text(const std::string& name, const ChunkStore::Robot& robot
          std::to_string(robot.blocks) + " blocks came so\n";
 }
 
-nlohmann::json carried_json(const ChunkStore::Robot& robot, Time now) {
+nlohmann::json carried_json(const ChunkStore::RobotMap& robot, Time now) {
   nlohmann::json out = nlohmann::json::array();
   for (const auto& [carrier, carried] : robot.carriers)
     out.push_back(
@@ -51,7 +51,7 @@ std::string map_status_text(const MapReceiver& map, Time now) {
   std::vector<std::vector<std::string>> rows{
       {"ROBOT", "SHARE", "M2", "SUBMAPS", "BLOCKS", "KB", "B/M2", "AGE", "WAITING"}};
   for (const auto& [name, robot] : chunks.robots()) {
-    const double area = chunks.area(name);
+    const double area = ground_area(chunks, now, name).m2;
     rows.push_back({name, robot.heard ? fixed(100.0 * share(robot), 0) + " %" : "-", fixed(area, 0),
                     std::to_string(robot.submaps.size()), std::to_string(robot.blocks),
                     fixed(static_cast<double>(robot.bytes) / 1000.0, 1),
@@ -64,12 +64,11 @@ std::string map_status_text(const MapReceiver& map, Time now) {
     if (const std::size_t missing = waiting_for_pose(robot); missing > 0)
       out += name + ": the place of " + std::to_string(missing) + " submaps has not arrived yet\n";
   for (const auto& [name, robot] : chunks.robots()) out += carried_text(name, robot, now);
-  out += "all: " + fixed(chunks.area(), 0) + " m2";
-  const AreaAges ages = area_ages(chunks, now);
-  out += ", received within 10 s: " + fixed(100.0 * ages.within_10s, 0) +
-         " %, 1 min: " + fixed(100.0 * ages.within_1min, 0) +
-         " %, 10 min: " + fixed(100.0 * ages.within_10min, 0) +
-         " %, before the station's start: " + fixed(100.0 * ages.unknown, 0) + " %";
+  const GroundArea all = ground_area(chunks, now);
+  out += "all: " + fixed(all.m2, 0) + " m2, received within 10 s: " + fixed(100.0 * all.within_10s, 0) +
+         " %, 1 min: " + fixed(100.0 * all.within_1min, 0) +
+         " %, 10 min: " + fixed(100.0 * all.within_10min, 0) +
+         " %, before the station's start: " + fixed(100.0 * all.unknown, 0) + " %";
   if (map.refused() > 0) out += ", " + std::to_string(map.refused()) + " pieces refused";
   if (chunks.refused() > 0) out += ", " + std::to_string(chunks.refused()) + " parts without room";
   if (chunks.refused_carried() > 0)
@@ -83,7 +82,7 @@ nlohmann::json map_status_json(const MapReceiver& map, Time now) {
   for (const auto& [name, robot] : chunks.robots())
     robots.push_back({{"robot", name},
                       {"share", share(robot)},
-                      {"m2", chunks.area(name)},
+                      {"m2", ground_area(chunks, now, name).m2},
                       {"submaps", robot.submaps.size()},
                       {"submaps_without_pose", waiting_for_pose(robot)},
                       {"blocks", robot.blocks},
@@ -93,14 +92,14 @@ nlohmann::json map_status_json(const MapReceiver& map, Time now) {
                       {"waiting", robot.waiting},
                       {"carried_blocks", robot.carried_blocks},
                       {"carried", carried_json(robot, now)}});
-  const AreaAges ages = area_ages(chunks, now);
+  const GroundArea all = ground_area(chunks, now);
   return {{"robots", robots},
-          {"m2", chunks.area()},
+          {"m2", all.m2},
           {"share_by_age",
-           {{"within_10s", ages.within_10s},
-            {"within_1min", ages.within_1min},
-            {"within_10min", ages.within_10min},
-            {"unknown", ages.unknown}}},
+           {{"within_10s", all.within_10s},
+            {"within_1min", all.within_1min},
+            {"within_10min", all.within_10min},
+            {"unknown", all.unknown}}},
           {"refused_pieces", map.refused()},
           {"refused_parts", chunks.refused()},
           {"refused_carried_parts", chunks.refused_carried()}};

@@ -12,22 +12,17 @@ constexpr int kMaxZ = 32000;  // Voxels.
 constexpr std::size_t kCells = std::size_t{MapTile::kSide} * MapTile::kSide;
 
 std::uint8_t code_of(const TopView::Cell& cell) {
-  switch (cell.kind) {
-    case TopView::Kind::unknown:
-      return MapTile::kUnknown;
-    case TopView::Kind::ground:
-      return MapTile::kGround;
-    case TopView::Kind::low:
-    case TopView::Kind::high:
-      break;
-  }
+  if (cell.kind == TopView::Kind::unknown) return MapTile::kUnknown;
+  if (cell.kind == TopView::Kind::ground) return MapTile::kGround;
   return static_cast<std::uint8_t>(std::min(255, MapTile::kThing + std::max<int>(cell.height, 1) - 1));
 }
 
 /// Quotient rounded down.
-int tile_of(int cell) {
-  return cell >= 0 ? cell / MapTile::kSide : -((-cell + MapTile::kSide - 1) / MapTile::kSide);
+int floor_div(int value, int divisor) {
+  return value >= 0 ? value / divisor : -((-value + divisor - 1) / divisor);
 }
+
+int tile_of(int cell) { return floor_div(cell, MapTile::kSide); }
 
 }  // namespace
 
@@ -69,9 +64,37 @@ std::vector<MapTile> tiles_of(const perception::VoxelImage& image) {
   for (auto& [key, tile] : tiles) {
     std::ranges::sort(tile.runs, {}, [](const VoxelRun& run) { return std::pair(run.cell, run.z); });
     if (tile.runs.size() > MapTile::kMaxRuns) tile.runs.resize(MapTile::kMaxRuns);
+    out.push_back(std::move(tile));
   }
-  for (auto& [key, tile] : tiles) out.push_back(std::move(tile));
   return out;
+}
+
+void add_received(std::vector<MapTile>& tiles, const std::vector<MapPart>& parts, double resolution) {
+  std::map<std::pair<int, int>, MapTile*> by_place;
+  for (MapTile& tile : tiles) by_place[{tile.x, tile.y}] = &tile;
+  const double edge = MapTile::kRegion * resolution;
+  const auto note = [&](const Eigen::Vector3d& at, std::uint32_t received) {
+    const int x = static_cast<int>(std::floor(at.x() / edge)),
+              y = static_cast<int>(std::floor(at.y() / edge));
+    const auto found = by_place.find({floor_div(x, MapTile::kRegions), floor_div(y, MapTile::kRegions)});
+    if (found == by_place.end()) return;
+    MapTile& tile = *found->second;
+    if (tile.received.empty()) tile.received.resize(std::size_t{MapTile::kRegions} * MapTile::kRegions);
+    std::uint32_t& newest = tile.received[static_cast<std::size_t>(
+        (y - tile.y * MapTile::kRegions) * MapTile::kRegions + x - tile.x * MapTile::kRegions)];
+    newest = std::max(newest, tile_clock(received));
+  };
+  constexpr double kSize = perception::BlockIndex::kSize, kInside = 0.05;  // m
+  for (const MapPart& part : parts)
+    for (std::size_t i = 0; i < part.blocks.size() && i < part.received.size(); ++i) {
+      if (part.received[i] == 0) continue;
+      const perception::BlockIndex& index = part.blocks[i].index;
+      for (const double x : {kInside, kSize - kInside})
+        for (const double y : {kInside, kSize - kInside})
+          note(part.T_map_submap *
+                   Eigen::Vector3d(index.x * kSize + x, index.y * kSize + y, (index.z + 0.5) * kSize),
+               part.received[i]);
+    }
 }
 
 void Tiles::show(double resolution, std::vector<MapTile> tiles) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "basestation/map/merged_map.hpp"
 #include "basestation/map/top_view.hpp"
 #include "basestation/model/map_tiles.hpp"
 
@@ -12,6 +13,11 @@ namespace adit::station {
 
 /// The tiles of an image in which anything is known, without revisions.
 std::vector<MapTile> tiles_of(const perception::VoxelImage& image);
+
+/// The time of the tiles (MapUpdate::clock) from that of blocks (ChunkStore::clock).
+constexpr std::uint32_t tile_clock(std::uint32_t tenths) { return tenths == 0 ? 0 : tenths / 10 + 1; }
+/// Writes into tiles when the newest part of each region was received.
+void add_received(std::vector<MapTile>& tiles, const std::vector<MapPart>& parts, double resolution);
 
 /// The map seen from above as front ends receive it: in tiles, each with the revision of its last change.
 class Tiles {

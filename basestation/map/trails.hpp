@@ -8,7 +8,7 @@
 
 namespace adit::station {
 
-/// Where robots were, as they reported it. Of each robot a bounded number of points is stored: when they are
+/// The trails of robots, as they reported. Of each robot a bounded number of points is stored: when they are
 /// full, every second one is dropped and the points get farther apart.
 class Trails {
  public:

@@ -42,7 +42,7 @@ class CarriedMapTest : public testing::Test {
     return replica->take(sender, static_cast<std::uint8_t>(kind), 0, data, [this] { ++stored; });
   }
   void run(Duration span) { scheduler.run_until(scheduler.elapsed() + span); }
-  const ChunkStore::Robot& robot(const std::string& name) const {
+  const ChunkStore::RobotMap& robot(const std::string& name) const {
     return replica->chunks().robots().at(name);
   }
   std::uint64_t known(const std::string& name, int x) const {
@@ -192,11 +192,11 @@ TEST_F(CarriedMapTest, IsThereAfterARestartAlsoOfAFileThatWasWrittenAgain) {
   }
   EXPECT_EQ(restart(), "");
   for (const ChunkStore* chunks : std::array<const ChunkStore*, 2>{&again, &replica->chunks()}) {
-    const ChunkStore::Robot& r1 = chunks->robots().at("r1");
+    const ChunkStore::RobotMap& r1 = chunks->robots().at("r1");
     EXPECT_EQ(r1.blocks, 10U);
     EXPECT_EQ(r1.carried_blocks, 6U);
     EXPECT_THAT(r1.carriers, ElementsAre(Key("r2")));
-    EXPECT_FALSE(chunks->age(r1.submaps.begin()->second.blocks.begin()->second, Time{100s}));
+    EXPECT_EQ(r1.submaps.begin()->second.blocks.begin()->second.received, 0U);
   }
   EXPECT_EQ(robot("r1").digest, again.robots().at("r1").digest);
 }
@@ -227,8 +227,9 @@ TEST_F(CarriedMapTest, ABlockKnowsWhenItCame) {
   run(20s);
   ASSERT_TRUE(take("r2", transfer::Kind::carried_blocks, carried_blocks_of("r1", 1, kFull, 4)).ok());
   const auto& blocks = robot("r1").submaps.begin()->second.blocks;
-  EXPECT_EQ(replica->chunks().age(blocks.at({0, 0, 0}), strand->now()), Duration(20s));
-  EXPECT_EQ(replica->chunks().age(blocks.at({1, 0, 0}), strand->now()), Duration{});
+  const std::uint32_t now = replica->chunks().clock(strand->now());
+  EXPECT_EQ(now - blocks.at({0, 0, 0}).received, 200U) << "tenths of a second";
+  EXPECT_EQ(blocks.at({1, 0, 0}).received, now);
 }
 
 TEST_F(CarriedMapTest, StatusSaysWhichShareOfTheAreaIsHowOld) {

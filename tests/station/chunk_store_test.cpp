@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "basestation/map/ground_area.hpp"
 #include "basestation/map/merged_map.hpp"
 
 namespace adit::station {
@@ -96,19 +97,19 @@ TEST_F(ChunkStoreTest, StaysBounded) {
 }
 
 TEST_F(ChunkStoreTest, AreaCountsWhatTwoSubmapsSawOnce) {
-  EXPECT_EQ(chunks.area(), 0.0);
+  EXPECT_EQ(ground_area(chunks, {}).m2, 0.0);
   chunks.take("r1", piece_of(key, {0, 0, 0}, kAll, 0, 1));
   chunks.take("r1", piece_of(key, {0, 0, 1}, kAll, 0, 1));
-  EXPECT_EQ(chunks.area(), 0.0) << "where the submap is is not known yet";
+  EXPECT_EQ(ground_area(chunks, {}).m2, 0.0) << "where the submap is is not known yet";
   chunks.take("r1", pose_of(key, {}, 1));
-  EXPECT_NEAR(chunks.area(), 0.64, 1e-6);
+  EXPECT_NEAR(ground_area(chunks, {}).m2, 0.64, 1e-6);
   const SubmapKey other{"r1", 5, 1};
   chunks.take("r1", piece_of(other, {0, 0, 0}, kAll, 0, 1));
   chunks.take("r1", pose_of(other, {}, 1));
-  EXPECT_NEAR(chunks.area(), 0.64, 1e-6);
+  EXPECT_NEAR(ground_area(chunks, {}).m2, 0.64, 1e-6);
   chunks.take("r1", pose_of(other, Pose3::level({8.0, 0, 0}, 0), 2));
-  EXPECT_NEAR(chunks.area("r1"), 1.28, 1e-6);
-  EXPECT_EQ(chunks.area("r2"), 0.0);
+  EXPECT_NEAR(ground_area(chunks, {}, "r1").m2, 1.28, 1e-6);
+  EXPECT_EQ(ground_area(chunks, {}, "r2").m2, 0.0);
 }
 
 TEST_F(ChunkStoreTest, PartsHaveWhatIsPlaced) {

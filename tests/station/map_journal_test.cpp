@@ -17,7 +17,7 @@ class MapJournalTest : public testing::Test {
  protected:
   /// A start of the station; returns what the disk had.
   LoadedJournal restart(MapJournalParams params = {}) {
-    kept.clear();
+    stored.clear();
     journal.emplace(params, disk, *strand, [this](const std::string& text) { troubles.push_back(text); });
     LoadedJournal loaded = journal->load();
     if (loaded.start == 0 || loaded.unfinished)
@@ -28,7 +28,7 @@ class MapJournalTest : public testing::Test {
   }
   void add(std::uint32_t id, std::size_t bytes = 100) {
     journal->add({"r1", 1, store::Bytes(bytes, static_cast<std::uint8_t>(id))},
-                 [this, id] { kept.push_back(id); });
+                 [this, id] { stored.push_back(id); });
   }
   void run(Duration span) { scheduler.run_until(scheduler.elapsed() + span); }
   static std::vector<int> contents(const LoadedJournal& loaded) {
@@ -43,19 +43,19 @@ class MapJournalTest : public testing::Test {
   std::unique_ptr<Runtime> machine{scheduler.machine("op1", 5s)};
   std::shared_ptr<Strand> strand{machine->strand("station")};
   std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
-  std::vector<std::uint32_t> kept{};
+  std::vector<std::uint32_t> stored{};
   std::vector<std::string> troubles{};
   std::optional<MapJournal> journal{};
   std::uint32_t start{40};
 };
 
-TEST_F(MapJournalTest, APieceIsKeptOnceItIsWrittenAndIsThereAfterARestartUnderTheSameStart) {
+TEST_F(MapJournalTest, APieceIsStoredOnceItIsWrittenAndIsThereAfterARestartUnderTheSameStart) {
   EXPECT_EQ(restart().start, 0U);
   add(1);
   add(2);
-  EXPECT_THAT(kept, IsEmpty());
+  EXPECT_THAT(stored, IsEmpty());
   run(1s);
-  EXPECT_THAT(kept, ElementsAre(1, 2));
+  EXPECT_THAT(stored, ElementsAre(1, 2));
   add(3);
   run(1s);
   add(4);  // Not written yet when the station ends.
@@ -80,7 +80,7 @@ TEST_F(MapJournalTest, AWriteThatAPowerCutEndsLosesOnlyWhatWasNotAcknowledged) {
     disk->cut_power_after(step);
     add(2);
     run(1s);
-    const bool acknowledged = kept.size() == 2;
+    const bool acknowledged = stored.size() == 2;
     disk->power_up();
     const LoadedJournal loaded = restart();
     const std::vector<int> found = contents(loaded);
@@ -126,30 +126,30 @@ TEST_F(MapJournalTest, AFullDiskLeavesTheMapInMemoryAndTheNextStartIsNew) {
   disk->set_full(true);
   add(2);
   run(1s);
-  EXPECT_THAT(kept, ElementsAre(1)) << "what was not written comes again";
+  EXPECT_THAT(stored, ElementsAre(1)) << "what was not written comes again";
   EXPECT_THAT(troubles, ElementsAre(HasSubstr("no space left")));
   add(2);
-  EXPECT_THAT(kept, ElementsAre(1, 2)) << "in memory";
+  EXPECT_THAT(stored, ElementsAre(1, 2)) << "in memory";
   disk->set_full(false);
   const LoadedJournal loaded = restart();
   EXPECT_EQ(loaded.start, 0U);
   EXPECT_THAT(loaded.pieces, IsEmpty());
 }
 
-TEST_F(MapJournalTest, AFileThatCanBeNeitherWrittenNorRemovedKeepsNothing) {
+TEST_F(MapJournalTest, AFileThatCanBeNeitherWrittenNorRemovedStoresNothing) {
   restart();
   disk->set_refused(MapJournal::kFile, true);
   add(1);
   run(3s);
   add(2);
   run(10s);
-  EXPECT_THAT(kept, IsEmpty());
+  EXPECT_THAT(stored, IsEmpty());
   EXPECT_EQ(troubles.size(), 1U) << "said once";
   disk->set_refused(MapJournal::kFile, false);
   run(10s);
   EXPECT_EQ(troubles.size(), 2U);
   add(3);
-  EXPECT_THAT(kept, testing::Contains(3U));
+  EXPECT_THAT(stored, testing::Contains(3U));
 }
 
 TEST_F(MapJournalTest, AFileThatGrowsTooLongIsGivenUp) {
@@ -158,7 +158,7 @@ TEST_F(MapJournalTest, AFileThatGrowsTooLongIsGivenUp) {
     add(id);
     run(1s);
   }
-  EXPECT_EQ(kept.size(), 20U);
+  EXPECT_EQ(stored.size(), 20U);
   EXPECT_EQ(troubles.size(), 1U);
   EXPECT_EQ(restart().start, 0U);
 }
@@ -181,21 +181,21 @@ TEST_F(MapJournalTest, AFileThatIsWrittenAgainAndStaysLongIsGivenUp) {
   EXPECT_EQ(packed, 1);
   EXPECT_EQ(troubles.size(), 1U);
   add(31);
-  EXPECT_EQ(kept.back(), 31U) << "in memory";
+  EXPECT_EQ(stored.back(), 31U) << "in memory";
   EXPECT_EQ(restart().start, 0U);
 }
 
-TEST_F(MapJournalTest, AStartThatEndedIsKeptAsSuchOnce) {
+TEST_F(MapJournalTest, AStartThatEndedIsStoredAsSuchOnce) {
   restart();
   add(1);
-  journal->end_start([this] { kept.push_back(100); });
-  journal->end_start([this] { kept.push_back(101); });
-  EXPECT_THAT(kept, IsEmpty());
+  journal->end_start([this] { stored.push_back(100); });
+  journal->end_start([this] { stored.push_back(101); });
+  EXPECT_THAT(stored, IsEmpty());
   run(1s);
-  EXPECT_THAT(kept, ElementsAre(1, 100)) << "the second one comes again";
+  EXPECT_THAT(stored, ElementsAre(1, 100)) << "the second one comes again";
   const std::size_t bytes = file().size();
-  journal->end_start([this] { kept.push_back(102); });
-  EXPECT_THAT(kept, ElementsAre(1, 100, 102));
+  journal->end_start([this] { stored.push_back(102); });
+  EXPECT_THAT(stored, ElementsAre(1, 100, 102));
   add(2);
   run(1s);
   EXPECT_GT(file().size(), bytes);
@@ -213,7 +213,7 @@ TEST_F(MapJournalTest, ARobotThatWasForgottenIsNotReadUntilItIsHeardAgain) {
   journal->forget("r1");
   add(3);
   run(1s);
-  EXPECT_THAT(kept, ElementsAre(1, 2, 3));
+  EXPECT_THAT(stored, ElementsAre(1, 2, 3));
   const LoadedJournal loaded = restart();
   EXPECT_EQ(loaded.start, 0U);
   EXPECT_THAT(contents(loaded), ElementsAre(3));
@@ -223,7 +223,7 @@ TEST_F(MapJournalTest, WhatWaitsForTheDiskIsBounded) {
   restart({.max_waiting = 1000});
   for (std::uint32_t id = 1; id <= 20; ++id) add(id);
   run(1s);
-  EXPECT_EQ(kept.size(), 10U);
+  EXPECT_EQ(stored.size(), 10U);
 }
 
 }  // namespace

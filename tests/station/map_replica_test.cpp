@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "basestation/map/ground_area.hpp"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/store/memory_disk.hpp"
 #include "core/time/random.hpp"
@@ -80,11 +81,11 @@ TEST_F(MapReplicaTest, AStationThatRestartsHasItsMapAndItsStart) {
   run(1s);
   EXPECT_EQ(stored, 10);
   const Content before = content();
-  const double area = replica->chunks().area();
+  const double area = ground_area(replica->chunks(), {}).m2;
   EXPECT_EQ(restart(), "");
   EXPECT_EQ(replica->start(), start);
   EXPECT_EQ(content(), before);
-  EXPECT_EQ(replica->chunks().area(), area);
+  EXPECT_EQ(ground_area(replica->chunks(), {}).m2, area);
   EXPECT_FALSE(replica->chunks().robots().at("r1").heard) << "it was not heard since the start";
 }
 

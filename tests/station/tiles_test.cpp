@@ -5,7 +5,6 @@
 
 #include <array>
 
-#include "basestation/map/tile_ages.hpp"
 #include "core/time/random.hpp"
 
 namespace adit::station {
@@ -74,9 +73,9 @@ TEST(Tiles, OnlyWhatChangedIsSentAndAllOfItInParts) {
     map.set({4, 4, 0}, Voxel::free);
     tiles.show(kEdge, tiles_of(map));
   }
-  const MapUpdate whole = tiles.since(0, 10);
-  ASSERT_EQ(client.tiles.size(), whole.tiles.size());
-  for (const MapTile& tile : whole.tiles) EXPECT_EQ(client.tiles.at({tile.x, tile.y})->cells, tile.cells);
+  const MapUpdate complete = tiles.since(0, 10);
+  ASSERT_EQ(client.tiles.size(), complete.tiles.size());
+  for (const MapTile& tile : complete.tiles) EXPECT_EQ(client.tiles.at({tile.x, tile.y})->cells, tile.cells);
 }
 
 TEST(Tiles, WhatIsGoneFromTheViewBecomesUnknown) {
