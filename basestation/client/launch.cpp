@@ -10,8 +10,9 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <nlohmann/json.hpp>
+#include <optional>
 
+#include "basestation/client/connection.hpp"
 #include "basestation/client/paths.hpp"
 #include "core/command/words.hpp"
 #include "core/wire/link_file.hpp"
@@ -21,14 +22,12 @@ namespace {
 
 constexpr int kReadyFd = 3;
 constexpr int kStartLimitMs = 10000;
-constexpr int kHelloLimitMs = 1000;
+constexpr auto kHelloLimit = std::chrono::seconds(1);
+constexpr int kHelloPollMs = 100;
 
 std::vector<std::string> arguments(const StationOptions& options) {
-  std::vector<std::string> words{options.program, "--name", options.name, "--domain",
-                                 std::to_string(options.domain)};
+  std::vector<std::string> words = program_words(options);
   if (!options.link.empty()) words.insert(words.end(), {"--link", options.link});
-  for (const std::string& address : options.interfaces) words.insert(words.end(), {"--interface", address});
-  for (const std::string& peer : options.peers) words.insert(words.end(), {"--peer", peer});
   if (!options.at.empty()) words.push_back("--at");
   for (const float metres : options.at) words.push_back(std::to_string(metres));
   if (!options.record.empty()) words.insert(words.end(), {"--record", options.record});
@@ -58,24 +57,19 @@ std::vector<std::string> arguments(const StationOptions& options) {
   ::_exit(127);
 }
 
-/// Asks the station for its description; null if it does not answer immediately, which the command itself
+/// Asks the station for its description. Nothing if it does not answer immediately, which the command itself
 /// then reports.
-nlohmann::json ask_hello(LineSocket& socket) {
-  if (!socket.send_line(R"({"hello": true})")) return {};
-  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kHelloLimitMs);
-  for (;;) {
-    // Events of other programs' commands may come first.
-    while (const auto line = socket.line()) {
-      const auto answer = nlohmann::json::parse(*line, nullptr, false);
-      if (answer.is_object() && answer.contains("hello") && answer["hello"].is_object())
-        return answer["hello"];
-    }
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
-    pollfd readable{socket.fd(), POLLIN, 0};
-    if (left.count() <= 0 || ::poll(&readable, 1, static_cast<int>(left.count())) <= 0 || !socket.pump())
-      return {};
-  }
+std::optional<StationOptions> ask_hello(const std::string& path) {
+  auto socket = LineSocket::connect(path);
+  if (!socket) return std::nullopt;
+  Connection connection(std::move(*socket), "hello");
+  std::optional<StationOptions> running;
+  connection.on_hello = [&](const StationOptions& options) { running = options; };
+  connection.hello();
+  const auto until = std::chrono::steady_clock::now() + kHelloLimit;
+  while (!running && std::chrono::steady_clock::now() < until)
+    if (!connection.wait(kHelloPollMs)) break;
+  return running;
 }
 
 std::string text_of(std::vector<std::string> addresses) {
@@ -86,41 +80,47 @@ std::string text_of(std::vector<std::string> addresses) {
 
 /// Checks the running station's network: on another domain or interface the command would reach other robots.
 /// Returns a remark on options that have no effect, or nothing.
-Result<std::string> check_running(LineSocket& socket, const StationOptions& options) {
+Result<std::string> check_running(const std::string& path, const StationOptions& options) {
   const bool asks = options.domain_given || !options.link.empty() || !options.interfaces.empty() ||
                     !options.peers.empty() || !options.at.empty() || !options.record.empty();
   if (!asks) return std::string();
-  const nlohmann::json hello = ask_hello(socket);
-  if (hello.is_null()) return std::string();
-  const auto domain = hello.value("domain", options.domain);
-  if (options.domain_given && domain != options.domain)
-    return Error{Reason::bad_argument,
-                 "the station of " + options.name + " runs on domain " + std::to_string(domain) +
-                     "; leave --domain out, choose another --name, or end it: basestation --name " +
-                     options.name + " down"};
-  const std::string running = text_of(hello.value("interfaces", options.interfaces));
-  if (!options.interfaces.empty() && running != text_of(options.interfaces))
-    return Error{Reason::bad_argument,
-                 "the station of " + options.name + " runs on " + running +
-                     "; leave --interface out, choose another --name, or end it: basestation --name " +
-                     options.name + " down"};
+  const std::optional<StationOptions> running = ask_hello(path);
+  if (!running) return std::string();
+  const std::string station = "the station of " + options.name + " runs ";
+  const auto misfit = [&](const std::string& where, const char* option) {
+    return Error{Reason::bad_argument, station + "on " + where + "; leave " + option +
+                                           " out, choose another --name, or end it: basestation --name " +
+                                           options.name + " down"};
+  };
+  if (options.domain_given && running->domain != options.domain)
+    return misfit("domain " + std::to_string(running->domain), "--domain");
+  if (!options.interfaces.empty() && text_of(running->interfaces) != text_of(options.interfaces))
+    return misfit(text_of(running->interfaces), "--interface");
   std::string remark;
   const auto has_no_effect = [&](const std::string& how, const char* option) {
-    remark += (remark.empty() ? "" : "\n") + ("the station of " + options.name) + " runs " + how + "; " +
-              option + " counts only when a station starts";
+    remark +=
+        (remark.empty() ? "" : "\n") + station + how + "; " + option + " counts only when a station starts";
   };
-  const auto link = hello.value("link", options.link);
-  if (!options.link.empty() && link != options.link)
-    has_no_effect(link.empty() ? "without a link profile" : "on " + link, "--link");
-  const auto peers = hello.value("peers", options.peers);
-  if (!options.peers.empty() && peers != options.peers)
-    has_no_effect(peers.empty() ? "without peers" : "with the peers " + command::joined(peers, ""), "--peer");
+  if (!options.link.empty() && running->link != options.link)
+    has_no_effect(running->link.empty() ? "without a link profile" : "on " + running->link, "--link");
+  if (!options.peers.empty() && running->peers != options.peers)
+    has_no_effect(
+        running->peers.empty() ? "without peers" : "with the peers " + command::joined(running->peers, ""),
+        "--peer");
   if (!options.at.empty()) has_no_effect("already", "--at");
   if (!options.record.empty()) has_no_effect("already", "--record");
   return remark;
 }
 
 }  // namespace
+
+std::vector<std::string> program_words(const StationOptions& options) {
+  std::vector<std::string> words{options.program, "--name", options.name, "--domain",
+                                 std::to_string(options.domain)};
+  for (const std::string& address : options.interfaces) words.insert(words.end(), {"--interface", address});
+  for (const std::string& peer : options.peers) words.insert(words.end(), {"--peer", peer});
+  return words;
+}
 
 Result<void> launch(const StationOptions& options) {
   auto state = state_folder();
@@ -166,7 +166,7 @@ Result<Connected> connect_or_launch(const StationOptions& options) {
   if (!path) return path.error();
   auto socket = LineSocket::connect(*path);
   if (socket) {
-    auto remark = check_running(*socket, options);
+    auto remark = check_running(*path, options);
     if (!remark) return remark.error();
     return Connected{std::move(*socket), std::move(*remark)};
   }

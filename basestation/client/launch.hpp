@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <vector>
 
 #include "basestation/client/line_socket.hpp"
 #include "basestation/client/options.hpp"
@@ -13,6 +14,8 @@ struct Connected {
   std::string remark{};
 };
 
+/// The words that run the program `basestation` for this operator, on the same network.
+std::vector<std::string> program_words(const StationOptions& options);
 /// Starts this operator's station as a process of its own, which outlives this one, and waits until it is
 /// ready. Errors: the station's error when it could not start, no_answer. Uses no DDS in this process.
 Result<void> launch(const StationOptions& options);

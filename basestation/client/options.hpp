@@ -6,7 +6,7 @@
 
 namespace adit::station::client {
 
-/// Which station a front end uses, and how that is started if it does not run.
+/// The station that a front end uses, and how it is started if it does not run.
 struct StationOptions {
   std::string name{"op1"};  ///< Name of the operator.
   /// Link profile that limits the traffic: one of config/links, or a .yaml file; empty: none.

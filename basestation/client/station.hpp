@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
+#include "basestation/client/launch.hpp"
 #include "basestation/client/options.hpp"
-#include "basestation/model/action.hpp"
 #include "basestation/model/map_tiles.hpp"
 #include "basestation/model/outcome.hpp"
 #include "basestation/model/stick_velocity.hpp"
@@ -17,7 +25,9 @@
 
 namespace adit::station::client {
 
-/// What changed since the last take().
+class Connection;
+
+/// The changes since the last take().
 struct Changes {
   bool world{}, map{}, link{};
   std::vector<Notice> notices{};         ///< In their order.
@@ -73,8 +83,6 @@ class Station {
   /// them without it.
   void stop(const std::vector<std::string>& robots, Done done);
 
-  /// What each robot of that selection would accept now, of world().
-  std::vector<Action> actions(const std::vector<std::string>& robots) const;
   /// Whether the map is asked for, once a second.
   void want_map(bool wanted);
   /// Sets what robots send first of a map that is late; nothing: no place.
@@ -83,10 +91,59 @@ class Station {
   Result<void> start_station();
 
  private:
-  class Impl;
-  explicit Station(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
-  std::string remark_{};
+  using Clock = std::chrono::steady_clock;
+
+  Station(const StationOptions& options, std::string front_end, Connected connected);
+  RequestId ask(std::function<std::int64_t(Connection&)> request, Done done);
+  StationOptions options() const;
+  void wake();
+  /// Calls the owner unless that is pending. Releases the lock.
+  void poke(std::unique_lock<std::mutex>& guard);
+  void end(Done done, CommandOutcome outcome, std::unique_lock<std::mutex>& guard);
+  template <class Change>
+  void change(const Change& make);
+  template <class T>
+  void add_change(std::vector<T>& list, const T& value);
+
+  // In the thread.
+  void run(LineSocket first);
+  void serve(LineSocket socket);
+  void write(Connection& connection);
+  void listen(Connection& connection);
+  void take_map(MapUpdate update, bool more);
+  /// Waits for `wake_` or the time.
+  void pause(std::chrono::milliseconds time);
+  void drain();
+
+  const std::string front_end_;
+  const std::string remark_;
+  File wake_;
+  std::atomic<bool> ending_{false}, map_wanted_{false};
+
+  // Of the thread alone.
+  std::map<RequestId, std::int64_t> sent_{};  ///< The connection's id of each open request.
+  std::uint64_t run_{};                       ///< The station's run to which the map belongs.
+  Clock::time_point next_map_{};              ///< When the map is asked for.
+
+  mutable std::mutex mutex_{};  // Guards all below.
+  std::optional<LookedAt> look_{};
+  StationOptions options_;  // Domain and network as the running station has them.
+  std::shared_ptr<const World> world_{std::make_shared<World>()};
+  std::shared_ptr<const TileMap> map_{std::make_shared<TileMap>()};
+  Link link_{.connected = true};
+  Clock::time_point heard_{Clock::now()};
+  Changes changes_{};
+  std::function<void()> poke_{};
+  bool poked_{false};
+  RequestId next_{1};
+  std::deque<std::function<void(Connection&)>> calls_{};  ///< To be written.
+  std::map<RequestId, StickVelocity> sticks_{};           ///< The newest of each drive, to be written.
+  std::map<RequestId, Done> open_{};
+  std::vector<std::pair<Done, CommandOutcome>> ended_{};
+  int stops_{};
+  std::condition_variable stops_ended_{};
+
+  std::thread thread_{};
 };
 
 }  // namespace adit::station::client

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "basestation/client/connection.hpp"
+#include "basestation/client/launch.hpp"
 #include "basestation/client/paths.hpp"
 #include "basestation/model/outcome.hpp"
 #include "core/command/words.hpp"
@@ -32,15 +33,13 @@ constexpr std::size_t kMaxText = 64 << 10;
 CommandOutcome failed(const std::string& text) { return {.exit_code = kExitNoAnswer, .error = text + "\n"}; }
 
 CommandOutcome by_program(const StationOptions& options, const std::string& line) {
-  auto words = command::split_words(line);
-  if (!words) return failed(words.error().text);
-  words->insert(words->begin(), {options.program, "--name", options.name, "--domain",
-                                 std::to_string(options.domain), "--alone"});
-  for (const std::string& address : options.interfaces)
-    words->insert(words->begin() + 1, {"--interface", address});
-  for (const std::string& peer : options.peers) words->insert(words->begin() + 1, {"--peer", peer});
+  const auto typed = command::split_words(line);
+  if (!typed) return failed(typed.error().text);
+  std::vector<std::string> words = program_words(options);
+  words.push_back("--alone");
+  words.insert(words.end(), typed->begin(), typed->end());
   std::vector<char*> argv;
-  for (std::string& word : *words) argv.push_back(word.data());
+  for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
 
   int ends[2];
