@@ -80,8 +80,9 @@ Priority AlertQueue::add(const Notice& notice, const World& world, double now) {
     known->priority = std::min(known->priority, priority);
     return priority;
   }
-  if (Alert* whole = row && !row->part_of.empty() ? find(notice.robot, std::string(row->part_of)) : nullptr;
-      whole && std::abs(at - whole->last) <= kTogether)
+  if (Alert* covering =
+          row && !row->part_of.empty() ? find(notice.robot, std::string(row->part_of)) : nullptr;
+      covering && std::abs(at - covering->last) <= kTogether)
     return priority;
   make_room();
   Alert alert{next_++, priority, notice.code, {}, notice.text, notice.reason, 1, at, at, false, 0.0};

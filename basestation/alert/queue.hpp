@@ -23,7 +23,8 @@ struct Alert {
   double hidden_until{};   ///< The operator wants it again after that time, s.
 };
 
-/// Which notifications need the operator: the alerts of priority `act` and `soon`, until their cause is gone.
+/// The notifications that need the operator: the alerts of priority `act` and `soon`, until their cause is
+/// gone.
 ///
 /// One alert per robot and code, with a count. A code that says the same as a more urgent one within 5 s is
 /// none of its own. A code of three or more robots within 5 s is one alert for all

@@ -6,7 +6,7 @@
 
 namespace adit::station {
 
-/// How soon the operator must act on a notification.
+/// The urgency of a notification for the operator.
 enum class Priority : std::uint8_t {
   act,   ///< Motion or control is at stake: a banner that stays until it was seen.
   soon,  ///< A robot does nothing useful: a row of the attention queue.
@@ -14,7 +14,7 @@ enum class Priority : std::uint8_t {
   log,   ///< The rest.
 };
 
-/// What ends the cause of an alert, beside a notification that closes it.
+/// The state that ends an alert, beside a notification that closes it.
 enum class Ends : std::uint8_t {
   seen,          ///< The state of the robot does not show it: when the operator has seen it.
   heard,         ///< The robot is heard.
@@ -26,7 +26,7 @@ enum class Ends : std::uint8_t {
   by_hand,       ///< The robot is not driven by hand.
 };
 
-/// What a notification code means to an operator.
+/// The meaning of a notification code for an operator.
 struct AlertRow {
   std::string_view code{};
   Priority priority{};

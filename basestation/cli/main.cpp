@@ -9,12 +9,7 @@
 #include "basestation/cli/interrupt.hpp"
 #include "basestation/cli/prompt.hpp"
 #include "basestation/cli/run_line.hpp"
-#include "basestation/cli/script.hpp"
-#include "basestation/cli/stop.hpp"
-#include "basestation/cli/teleop.hpp"
-#include "basestation/cli/watch/watch.hpp"
 #include "basestation/client/arguments.hpp"
-#include "basestation/client/paths.hpp"
 #include "basestation/host/serve.hpp"
 #include "core/command/parse.hpp"
 #include "core/command/vocabulary.hpp"
@@ -23,8 +18,6 @@
 
 namespace adit::station::cli {
 namespace {
-
-using command::verb;
 
 std::string footer() {
   return "Commands (without one: a prompt that takes them):\n" + command::help_all() +
@@ -53,39 +46,12 @@ int show_help(const std::vector<std::string>& words, const Options& options) {
   return fail(options, kExitUsage, command::parse(std::vector<std::string>{words[1]}).error());
 }
 
-int down_without_station(const Options& options) {
-  std::printf("%s", options.json ? "{\"command\":\"down\",\"exit\":0,\"ok\":true,\"results\":[]}\n" : "");
-  if (!options.json) std::printf("no station of %s is running\n", options.name.c_str());
-  return kExitDone;
-}
-
 int run_command(const Options& options, const std::vector<std::string>& words) {
   if (words[0] == "help") return show_help(words, options);
   if (words[0] == "completion") return print_completion(options, words);
-  auto request = command::parse(words);
+  const auto request = command::parse(words);
   if (!request) return fail(options, kExitUsage, request.error());
-  const std::string line = client::quoted(words);
-  if (request->verb == verb("stop")) return stop(options, line, request->all);
-  if (request->verb == verb("down")) {
-    auto path = client::socket_path(options.name);
-    if (!path) return fail(options, kExitRefused, path.error());
-    auto socket = client::LineSocket::connect(*path);
-    if (!socket) return down_without_station(options);
-    client::Connection client(std::move(*socket), "shell");
-    return run_line(client, options, line);
-  }
-  if (request->verb == verb("run")) {
-    auto script = read_script(request->word("FILE"));  // It is read before anything starts.
-    if (!script) return fail(options, kExitUsage, script.error());
-    return play(options, *script, request->has("--all"));
-  }
-  auto socket = connect(options);
-  if (!socket) return fail(options, exit_without_station(socket.error()), socket.error());
-  const bool terminal = request->info->runs == command::Runs::terminal;
-  client::Connection client(std::move(*socket), terminal ? std::string(request->info->name) : "shell");
-  if (request->verb == verb("watch")) return watch(client, options);
-  if (request->verb == verb("teleop")) return teleop(client, options, request->robots.front());
-  return run_line(client, options, line);
+  return run_request(options, *request, client::quoted(words), nullptr);
 }
 
 }  // namespace

@@ -15,10 +15,6 @@
 #include "basestation/cli/completion.hpp"
 #include "basestation/cli/interrupt.hpp"
 #include "basestation/cli/run_line.hpp"
-#include "basestation/cli/script.hpp"
-#include "basestation/cli/stop.hpp"
-#include "basestation/cli/teleop.hpp"
-#include "basestation/cli/watch/watch.hpp"
 #include "basestation/client/paths.hpp"
 #include "basestation/report/table.hpp"
 #include "core/command/parse.hpp"
@@ -66,10 +62,10 @@ class Prompt {
   /// Prints received notices; returns whether something was printed.
   bool poll_notices(int timeout_ms, int other_fd) {
     printed_ = false;
-    if (client_ && client_->connected() && !client_->wait(timeout_ms, other_fd)) {
+    if (connected() && !client_->wait(timeout_ms, other_fd)) {
       std::printf("%sthe station has ended; the next command starts one\n", clear_);
       printed_ = true;
-    } else if (!client_ || !client_->connected()) {
+    } else if (!connected()) {
       pollfd input{other_fd, POLLIN, 0};
       ::poll(&input, 1, timeout_ms);
     }
@@ -107,24 +103,15 @@ class Prompt {
     client_->follow();
   }
 
+  bool connected() const { return client_ && client_->connected(); }
+
   int run(const Request& request, const std::string& line) {
-    if (request.verb == verb("stop")) return stop(options_, line, request.all);
-    if (request.verb == verb("run")) {
-      auto script = read_script(request.word("FILE"));
-      if (!script) return fail(options_, kExitUsage, script.error());
-      return play(options_, *script, request.has("--all"));
-    }
-    if (!client_ || !client_->connected())
-      if (auto connected = connect(); !connected)
-        return fail(options_, exit_without_station(connected.error()), connected.error());
-    if (request.verb == verb("watch") || request.verb == verb("teleop")) {
-      auto socket = cli::connect(options_);
-      if (!socket) return fail(options_, exit_without_station(socket.error()), socket.error());
-      client::Connection own(std::move(*socket), std::string(request.info->name));
-      return request.verb == verb("watch") ? watch(own, options_)
-                                           : teleop(own, options_, request.robots.front());
-    }
-    return run_line(*client_, options_, line);
+    const bool needs_station =
+        request.verb != verb("stop") && request.verb != verb("run") && request.verb != verb("down");
+    if (needs_station && !connected())
+      if (auto good = connect(); !good)
+        return fail(options_, exit_without_station(good.error()), good.error());
+    return run_request(options_, request, line, connected() ? &*client_ : nullptr);
   }
 
   Options options_;

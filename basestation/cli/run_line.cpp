@@ -8,9 +8,13 @@
 #include <cstdio>
 #include <optional>
 
+#include "basestation/cli/commands.hpp"
 #include "basestation/cli/interrupt.hpp"
+#include "basestation/cli/script.hpp"
 #include "basestation/client/launch.hpp"
+#include "basestation/client/paths.hpp"
 #include "basestation/model/json.hpp"
+#include "core/command/vocabulary.hpp"
 
 namespace adit::station::cli {
 
@@ -76,6 +80,34 @@ int run_line(client::Connection& client, const Options& options, const std::stri
   }
   const int code = print_outcome(options, *outcome);
   return cancelled ? 130 : code;
+}
+
+int run_request(const Options& options, const command::Request& request, const std::string& line,
+                client::Connection* shared) {
+  using command::verb;
+  if (request.verb == verb("stop")) return stop(options, request, line);
+  if (request.verb == verb("run")) {
+    auto script = read_script(request.word("FILE"));  // It is read before anything starts.
+    if (!script) return fail(options, kExitUsage, script.error());
+    return play(options, *script, request.has("--all"));
+  }
+  const bool terminal = request.info->runs == command::Runs::terminal;
+  if (shared != nullptr && !terminal) return run_line(*shared, options, line);
+  if (request.verb == verb("down")) {
+    const auto path = client::socket_path(options.name);
+    if (!path) return fail(options, kExitRefused, path.error());
+    if (!client::LineSocket::connect(*path)) {
+      std::printf("%s", options.json ? "{\"command\":\"down\",\"exit\":0,\"ok\":true,\"results\":[]}\n"
+                                     : ("no station of " + options.name + " is running\n").c_str());
+      return kExitDone;
+    }
+  }
+  auto socket = connect(options);
+  if (!socket) return fail(options, exit_without_station(socket.error()), socket.error());
+  client::Connection client(std::move(*socket), terminal ? std::string(request.info->name) : "shell");
+  if (request.verb == verb("watch")) return watch(client, options);
+  if (request.verb == verb("teleop")) return teleop(client, options, request.robots.front());
+  return run_line(client, options, line);
 }
 
 std::string command_of_another(const CommandEvent& event) {

@@ -4,6 +4,7 @@
 
 #include "basestation/cli/options.hpp"
 #include "basestation/client/connection.hpp"
+#include "core/command/request.hpp"
 #include "core/result/result.hpp"
 
 namespace adit::station::cli {
@@ -13,6 +14,10 @@ namespace adit::station::cli {
 Result<client::LineSocket> connect(const Options& options);
 /// The program's exit code if connect() failed.
 int exit_without_station(const Error& error);
+/// Runs a parsed command line, at the station or in this process; starts a station if the command needs one.
+/// `shared`: a connection for commands without a terminal; null: one of its own. Returns the exit code.
+int run_request(const Options& options, const command::Request& request, const std::string& line,
+                client::Connection* shared);
 /// Runs one line at the station and prints its outcome; SIGINT ends it. Returns the exit code.
 int run_line(client::Connection& client, const Options& options, const std::string& line);
 /// Prints an outcome: text on stdout, refusals on stderr, or with --json its object on stdout. Returns its

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "basestation/cli/stop.hpp"
+#include "basestation/cli/commands.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -13,7 +13,7 @@ namespace adit::station::cli {
 
 using namespace std::chrono_literals;
 
-int stop(const Options& options, const std::string& line, bool all) {
+int stop(const Options& options, const command::Request& request, const std::string& line) {
   if (!options.alone)
     if (const auto outcome = client::stop_by_station(options, "shell", line))
       return print_outcome(options, *outcome);
@@ -23,9 +23,9 @@ int stop(const Options& options, const std::string& line, bool all) {
   // A stop to a named robot is repeated for 10 s, whether it is heard or not; `all` are the robots heard
   // within 5 s.
   auto live = host::LiveStation::open(
-      options, {.presence = 100ms, .discovery_grace = all ? 5s : 10s, .content = false});
+      options, {.presence = 100ms, .discovery_grace = request.all ? 5s : 10s, .content = false});
   if (!live) return fail(options, kExitNoAnswer, live.error());
-  const Outcome outcome = (*live)->execute(line, 25s);
+  const Outcome outcome = (*live)->execute(request, 25s);
   if (outcome.exit_code == kExitNoAnswer)
     std::fprintf(stderr, "this program ends: the stop no longer goes out\n");
   return print_outcome(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "basestation/cli/teleop.hpp"
+#include "basestation/cli/commands.hpp"
 
 #include <unistd.h>
 

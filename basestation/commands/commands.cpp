@@ -6,9 +6,9 @@
 
 #include "adit/command.h"
 #include "basestation/commands/station_commands.hpp"
-#include "basestation/fleet/all_robots.hpp"
 #include "basestation/flow/arrival.hpp"
 #include "basestation/flow/steer.hpp"
+#include "basestation/model/outcome.hpp"
 #include "basestation/report/text.hpp"
 #include "core/command/words.hpp"
 
@@ -48,6 +48,22 @@ bool ended_by_stop(const Request& request) {
   return request.info->conditions.holder && request.info->line != command::Line::authority;
 }
 
+/// Names the robots that the `all` of a request means now. Errors: not_holder or unknown_robot when it means
+/// none.
+Result<Request> with_robots_named(Request request, const Fleet& fleet) {
+  using command::AllRobots;
+  const AllRobots all = request.info->arguments[0].all;
+  for (const auto& [name, robot] : fleet.robots())
+    if (all == AllRobots::heard || (all == AllRobots::held && robot.mine) ||
+        (all == AllRobots::unheld && robot.owned && robot.holder.empty() && !robot.lost))
+      request.robots.push_back(name);
+  if (!request.robots.empty()) return request;
+  if (all == AllRobots::held) return {Reason::not_holder, "you hold no robot"};
+  return {Reason::unknown_robot,
+          fleet.robots().empty() ? "no robot has been heard"
+                                 : "every robot has a holder; to take one from another operator, name it"};
+}
+
 bool shares_robots(const Request& one, const Request& other) {
   return one.all || other.all ||
          std::find_first_of(one.robots.begin(), one.robots.end(), other.robots.begin(), other.robots.end()) !=
@@ -69,9 +85,6 @@ Commands::Commands(const StationParams& params, Executor& strand, wire::Particip
               radio, fleet),
       stick_(params.id, strand, radio, fleet),
       maps_(params, strand, fleet, content) {
-  sender_.on_sent = [this](const RobotCommand& robot_command, std::uint64_t seq) {
-    if (on_sent) on_sent(robot_command, seq);
-  };
   sender_.on_late = [this](const Answer& answer) { late_stop(answer); };
 }
 
@@ -141,9 +154,7 @@ void Commands::refuse(const Request& request, Reason reason, const std::string& 
 
 std::uint64_t Commands::refuse(const Error& error, const Done& done) {
   note({.reason = error.reason, .text = error.text});
-  done({.exit_code = 2,
-        .error = error.text + "\n",
-        .json = {{"exit", 2}, {"ok", false}, {"reason", name(error.reason)}, {"error", error.text}}});
+  done(failed_outcome(kExitUsage, error));
   return next_handle_++;
 }
 
@@ -311,7 +322,7 @@ void Commands::down(const Request& request, const Done& done) {
 
 void Commands::note(const Answer& answer) {
   last_answer_ = answer;
-  if (on_answer) on_answer(answer);
+  if (on_answer) on_answer();
 }
 
 void Commands::late_stop(const Answer& answer) {

@@ -47,9 +47,7 @@ class Commands {
   const std::optional<Answer>& last_answer() const { return last_answer_; }
 
   /// Observers. Set them before the first command.
-  std::function<void(const RobotCommand&, std::uint64_t seq)> on_sent{};
-  std::function<void(const Answer&)> on_answer{};
-  std::function<void()> on_down{};
+  std::function<void()> on_answer{}, on_down{};
 
  private:
   /// A command line that waits, e.g. for its robots to be discovered.

@@ -19,4 +19,11 @@ Outcome refused_outcome(const command::Request& request, Reason reason, const st
   return outcome;
 }
 
+Outcome failed_outcome(int exit_code, const Error& error) {
+  return {
+      .exit_code = exit_code,
+      .error = error.text + "\n",
+      .json = {{"exit", exit_code}, {"ok", false}, {"reason", name(error.reason)}, {"error", error.text}}};
+}
+
 }  // namespace adit::station

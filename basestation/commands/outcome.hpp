@@ -8,7 +8,7 @@
 
 namespace adit::station {
 
-/// How a command line ended.
+/// The end of a command line.
 struct Outcome {
   int exit_code{0};       ///< 0: done, 1: refused, 2: wrong usage, 3: no answer.
   std::string text{};     ///< Readable result; lines end in a newline.
@@ -23,5 +23,8 @@ Outcome done_outcome(const command::Request& request, std::string text,
 /// empty: the reason says it all.
 Outcome refused_outcome(const command::Request& request, Reason reason, const std::string& line,
                         const std::string& error = {});
+
+/// The outcome of a line that was not run, e.g. as it does not parse.
+Outcome failed_outcome(int exit_code, const Error& error);
 
 }  // namespace adit::station

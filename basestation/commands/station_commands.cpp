@@ -5,7 +5,6 @@
 
 #include "basestation/findings/report.hpp"
 #include "basestation/model/json.hpp"
-#include "basestation/model/json_reports.hpp"
 #include "basestation/report/json.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
@@ -39,16 +38,6 @@ Outcome station_status(const Request& request, const QuerySubject& subject) {
           std::to_string(counts.accepted) + " accepted, " + std::to_string(counts.refused) + " refused, " +
           std::to_string(counts.unanswered) + " unanswered\n" + list_text(fleet, now),
       values);
-}
-
-/// `selection` empty: all robots.
-Outcome health(const Request& request, const Fleet& fleet, std::vector<const RobotView*> selection) {
-  if (selection.empty())
-    for (const auto& [robot_name, robot] : fleet.robots()) selection.push_back(&robot);
-  json robots = json::array();
-  for (const RobotView* robot : selection) robots.push_back(health_json(*robot));
-  return done_outcome(request, selection.empty() ? "no robot has been heard\n" : health_text(selection),
-                      {{"robots", robots}});
 }
 
 Outcome unknown_robot(const Request& request, const Fleet& fleet, const std::string& robot) {
@@ -90,7 +79,7 @@ std::string note_of(const Request& request) {
   return note;
 }
 
-Outcome judged(const Request& request, const findings::Key& key, const FindingBook::Entry& entry) {
+Outcome judged(const Request& request, const findings::Key& key, const FindingBook::Judgement& entry) {
   std::string text = "finding " + std::to_string(entry.number) + " of " + key.robot;
   if (request.verb != verb("finding note"))
     text += std::string(" is ") + to_string(entry.verdict);
@@ -124,10 +113,16 @@ Outcome query_outcome(const Request& request, const QuerySubject& subject) {
   if (request.verb == verb("status"))
     return selection.empty() ? station_status(request, subject)
                              : robot_status(request, subject, *selection.front());
-  if (request.verb == verb("net"))
-    return done_outcome(request, net_text(fleet, subject.now, subject.params.link, subject.params.bandwidth),
-                        net_json(fleet, subject.now));
-  if (request.verb == verb("health")) return health(request, fleet, selection);
+  if (request.verb == verb("net")) {
+    const NetworkReport report = network_report(fleet, subject.now);
+    return done_outcome(request, net_text(report, subject.params), json_of(report));
+  }
+  if (request.verb == verb("health")) {
+    if (selection.empty())
+      for (const auto& [name, robot] : fleet.robots()) selection.push_back(&robot);
+    const HealthReport report = health_report(selection);
+    return done_outcome(request, health_text(report), json_of(report));
+  }
   const std::vector<Action> rows = actions({selection.begin(), selection.end()});
   return done_outcome(request, actions_text(rows), {{"actions", actions_json(rows)}});
 }

@@ -10,7 +10,7 @@
 /// Commands that the station carries out itself.
 namespace adit::station {
 
-/// What queries report on.
+/// The data that queries report on.
 struct QuerySubject {
   const StationParams& params;
   const Fleet& fleet;

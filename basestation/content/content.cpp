@@ -27,7 +27,12 @@ Content::Content(const StationParams& params, Executor& strand, wire::Participan
       fleet_(fleet),
       presence_(presence),
       book_(params.disk, strand),
-      pieces_([&strand] { return strand.now(); }),
+      pieces_([&strand] { return strand.now(); },
+              [this](const PieceReader::Piece& piece, PieceReader::Stored stored) {
+                if (piece.kind == static_cast<std::uint8_t>(transfer::Kind::findings))
+                  return desk_.hear(piece.robot, piece.data, std::move(stored));
+                return map_.take(piece.robot, piece.kind, piece.waiting, piece.data, std::move(stored));
+              }),
       desk_({}, params.disk, strand, desk_outputs()),
       map_(drawn_start(), params.disk, strand,
            [this](const std::string& text) { warn("map_not_stored", text); }) {}
@@ -43,12 +48,6 @@ void Content::load_findings() {
 Result<void> Content::open() {
   if (!params_.content) return {};
   if (const std::string lost = map_.load(); !lost.empty()) warn("map_damaged", lost);
-  pieces_.add(transfer::Kind::findings, [this](const PieceReader::Piece& piece, PieceReader::Stored stored) {
-    return desk_.hear(piece.robot, piece.data, std::move(stored));
-  });
-  pieces_.otherwise([this](const PieceReader::Piece& piece, const PieceReader::Stored& stored) {
-    return map_.take(piece.robot, piece.kind, piece.waiting, piece.data, stored);
-  });
   auto receipts = wire::Writer<radio::BulkAck>::make(radio_, wire::topics::kBulkAck);
   if (!receipts) return receipts.error();
   receipts_ = std::make_unique<wire::Writer<radio::BulkAck>>(std::move(*receipts));

@@ -7,27 +7,25 @@ namespace adit::station {
 
 void PieceReader::hear(const std::string& robot, std::uint32_t session) {
   const Time now = now_();
-  if (senders_.size() >= kMaxRobots && !senders_.contains(robot)) {
-    const auto oldest = std::min_element(senders_.begin(), senders_.end(), [](const auto& a, const auto& b) {
-      return a.second.heard < b.second.heard;
-    });
+  if (sessions_.size() >= kMaxRobots && !sessions_.contains(robot)) {
+    const auto oldest =
+        std::min_element(sessions_.begin(), sessions_.end(),
+                         [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; });
     if (now - oldest->second.heard <= kSilent) return;
-    senders_.erase(oldest);
+    sessions_.erase(oldest);
   }
-  senders_[robot] = {session, now};
+  sessions_[robot] = {session, now};
 }
 
 void PieceReader::take(const Piece& piece) {
   hear(piece.robot, piece.session);
   const auto stored = [this, robot = piece.robot, session = piece.session, id = piece.id] {
     // The robot may have started again since: its receipt is of its present session.
-    const auto present = senders_.find(robot);
-    if (present != senders_.end() && present->second.session == session)
+    const auto present = sessions_.find(robot);
+    if (present != sessions_.end() && present->second.number == session)
       (void)receiver_.take(robot, session, id, now_());
   };
-  const auto taker = takers_.find(piece.kind);
-  const Taker& use = taker == takers_.end() ? otherwise_ : taker->second;
-  if (!use || use(piece, stored)) return;
+  if (taker_(piece, stored)) return;
   ++refused_[piece.kind];
   receiver_.refused(piece.robot);
 }

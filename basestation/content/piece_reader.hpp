@@ -11,9 +11,9 @@
 
 namespace adit::station {
 
-/// Takes the pieces of content of all robots as they come by radio, genuine or not, and hands each to the
-/// taker of its kind. A piece is acknowledged once its taker says that its content is stored. While 64 robots
-/// are heard, pieces of further ones are not acknowledged.
+/// Takes the pieces of content of all robots as they come by radio, genuine or not, and hands each to a
+/// taker. A piece is acknowledged once its taker says that its content is stored. While 64 robots are heard,
+/// pieces of further ones are not acknowledged.
 class PieceReader {
  public:
   using Piece = contract::BulkPiece;
@@ -24,11 +24,7 @@ class PieceReader {
   using Taker = std::function<Result<void>(const Piece& piece, Stored stored)>;
 
   /// `now`: the time at which content is stored.
-  explicit PieceReader(std::function<Time()> now) : now_(std::move(now)) {}
-
-  /// Hands pieces of a kind to `taker`, and those of no such kind to the one of `otherwise`.
-  void add(transfer::Kind kind, Taker taker) { takers_[static_cast<std::uint8_t>(kind)] = std::move(taker); }
-  void otherwise(Taker taker) { otherwise_ = std::move(taker); }
+  PieceReader(std::function<Time()> now, Taker taker) : now_(std::move(now)), taker_(std::move(taker)) {}
 
   void take(const Piece& piece);
   /// Receipts to send now, by robot; see transfer::Receiver::due.
@@ -42,17 +38,16 @@ class PieceReader {
  private:
   static constexpr std::size_t kMaxRobots = 64;
   static constexpr Duration kSilent{30s};  ///< A robot that was silent for longer makes room for another one.
-  struct Sender {
-    std::uint32_t session{};  ///< The last one that was heard.
+  struct Session {
+    std::uint32_t number{};  ///< Of the last one that was heard.
     Time heard{};
   };
   void hear(const std::string& robot, std::uint32_t session);
 
   std::function<Time()> now_;
-  std::map<std::uint8_t, Taker> takers_{};
-  Taker otherwise_{};
+  Taker taker_;
   transfer::Receiver receiver_{};
-  std::map<std::string, Sender> senders_{};
+  std::map<std::string, Session> sessions_{};
   std::map<std::uint8_t, std::uint64_t> refused_{};
 };
 

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
-#include "basestation/model/json_reader.hpp"
+#include "basestation/model/json_fields.hpp"
 #include "core/command/words.hpp"
 
 namespace adit::station {
@@ -18,6 +17,21 @@ using nlohmann::json;
 constexpr const char* kFile = "judgements";
 constexpr int kVersion = 1;
 constexpr std::size_t kMaxBytes = std::size_t{32} << 20;
+
+/// A finding in the file.
+struct StoredJudgement {
+  std::string robot{}, id{};
+  FindingBook::Judgement judgement{};
+};
+
+template <class Io>
+void fields(Io& io, Of<Io, StoredJudgement>& row) {
+  io.field("robot", row.robot);
+  io.field("id", row.id);
+  io.field("number", row.judgement.number);
+  io.word("verdict", row.judgement.verdict, Verdict::rejected, [](Verdict v) { return to_string(v); });
+  io.field("note", row.judgement.note);
+}
 
 }  // namespace
 
@@ -47,41 +61,29 @@ bool FindingBook::read(const std::string& text) {
   std::string wrong;
   JsonReader in(object, wrong);
   int version = 0;
+  std::vector<StoredJudgement> rows;
   in.read("version", version);
-  if (version != kVersion) return false;
+  in.read("findings", rows);
+  if (!wrong.empty() || version != kVersion || rows.size() > kMaxEntries) return false;
   std::set<std::uint32_t> numbers;
-  in.each("findings", [&](const json& row) {
-    std::string misfit, id;
-    findings::Key key;
-    Entry entry;
-    JsonReader one(row, misfit);
-    one.read("robot", key.robot);
-    one.read("id", id);
-    one.read("number", entry.number);
-    one.word("verdict", entry.verdict, Verdict::rejected, [](Verdict v) { return to_string(v); });
-    one.read("note", entry.note);
+  for (auto& [robot, id, judgement] : rows) {
+    findings::Key key{.robot = robot};
     const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), key.id, 16);
-    if (!misfit.empty() || error != std::errc() || end != id.data() + id.size() || entry.number == 0)
+    if (error != std::errc() || end != id.data() + id.size() || judgement.number == 0 ||
+        !numbers.insert(judgement.number).second)
       return false;
-    if (!numbers.insert(entry.number).second) return false;
-    entry.note = command::clean(entry.note, kMaxNote);
-    next_ = std::max(next_, entry.number + 1);
-    entries_[key] = std::move(entry);
-    return entries_.size() <= kMaxEntries;
-  });
-  return wrong.empty();
+    judgement.note = command::clean(judgement.note, kMaxNote);
+    next_ = std::max(next_, judgement.number + 1);
+    entries_[key] = std::move(judgement);
+  }
+  return true;
 }
 
 std::string FindingBook::as_text() const {
-  json rows = json::array();
-  for (const auto& [key, entry] : entries_)
-    rows.push_back({{"robot", key.robot},
-                    {"id", findings::id_text(key.id)},
-                    {"number", entry.number},
-                    {"verdict", to_string(entry.verdict)},
-                    {"note", entry.note}});
-  const json object{{"version", kVersion}, {"findings", rows}};
-  return object.dump(-1, ' ', true, json::error_handler_t::replace);
+  std::vector<StoredJudgement> rows;
+  for (const auto& [key, judgement] : entries_)
+    rows.push_back({key.robot, findings::id_text(key.id), judgement});
+  return line_of({{"version", kVersion}, {"findings", JsonWriter::of(rows)}});
 }
 
 void FindingBook::add(const findings::Key& key) {
@@ -90,7 +92,7 @@ void FindingBook::add(const findings::Key& key) {
   changed({});
 }
 
-const FindingBook::Entry* FindingBook::find(const findings::Key& key) const {
+const FindingBook::Judgement* FindingBook::find(const findings::Key& key) const {
   const auto found = entries_.find(key);
   return found == entries_.end() ? nullptr : &found->second;
 }

@@ -13,13 +13,13 @@
 
 namespace adit::station {
 
-/// What the operator decided about each finding, and the numbers by which commands name findings. Stored in
+/// The operator's judgement of each finding, and the numbers by which commands name findings. Stored in
 /// one file on this station's disk. Writing runs on a thread of the pool, so that it delays no command.
 class FindingBook {
  public:
   static constexpr std::size_t kMaxNote = 200;  ///< Length of a note, bytes.
   static constexpr std::size_t kMaxEntries = 65536;
-  struct Entry {
+  struct Judgement {
     std::uint32_t number{};
     Verdict verdict{Verdict::open};
     std::string note{};
@@ -34,7 +34,7 @@ class FindingBook {
   std::string load();
   /// Gives a new finding the next number; one that is known keeps its own.
   void add(const findings::Key& key);
-  const Entry* find(const findings::Key& key) const;
+  const Judgement* find(const findings::Key& key) const;
   /// The key of the finding with that number; null: there is none.
   const findings::Key* key_of(std::uint32_t number) const;
   /// Change an entry that exists; `written` is called once, when it is on disk or cannot be written.
@@ -49,7 +49,7 @@ class FindingBook {
 
   std::shared_ptr<store::Disk> disk_;
   Executor& home_;
-  std::map<findings::Key, Entry> entries_{};
+  std::map<findings::Key, Judgement> entries_{};
   std::uint32_t next_{1};
   bool changed_{false}, writing_{false};
   std::vector<Written> waiting_{};

@@ -14,7 +14,7 @@ FindingDesk::FindingDesk(DeskParams params, std::shared_ptr<store::Disk> disk, E
                          Outputs outputs)
     : outputs_(std::move(outputs)),
       finding_store_({.max_findings = params.max_findings}, std::move(disk), home, nullptr,
-                     {[this](const findings::Key& key) { kept(key); },
+                     {[this](const findings::Key& key) { on_stored(key); },
                       [this](bool failing, const std::string& text) {
                         outputs_.trouble(failing ? "store_failing" : "store_works", text);
                       }}) {}
@@ -55,7 +55,7 @@ Result<void> FindingDesk::hear(const std::string& robot, std::span<const std::ui
   return {};
 }
 
-void FindingDesk::kept(const findings::Key& key) {
+void FindingDesk::on_stored(const findings::Key& key) {
   for (Waiting& piece : waiting_)
     if (piece.keys.erase(key) > 0 && piece.keys.empty()) piece.stored();
   std::erase_if(waiting_, [](const Waiting& piece) { return piece.keys.empty(); });

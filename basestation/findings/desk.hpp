@@ -13,6 +13,7 @@
 
 namespace adit::station {
 
+/// The bounds of a FindingDesk.
 struct DeskParams {
   std::size_t max_findings{4096};  ///< Maximum number of findings of all robots, [1, 65536].
 };
@@ -27,9 +28,9 @@ class FindingDesk {
     /// `code`: findings_full or store_failing, store_works.
     std::function<void(const std::string& code, const std::string& text)> trouble{};
   };
-  /// A robot's report on its own findings.
-  struct Robot {
-    std::uint32_t kept{}, overflowed{};
+  /// How many findings a robot stores, and for how many it had no room, as it reports.
+  struct Report {
+    std::uint32_t stored{}, overflowed{};
   };
 
   FindingDesk(DeskParams params, std::shared_ptr<store::Disk> disk, Executor& home, Outputs outputs);
@@ -43,7 +44,7 @@ class FindingDesk {
                     std::function<void()> stored);
 
   const std::map<findings::Key, findings::Finding>& all() const { return finding_store_.all(); }
-  const std::map<std::string, Robot>& robots() const { return robots_; }
+  const std::map<std::string, Report>& robots() const { return robots_; }
 
  private:
   /// A piece that is acknowledged when these findings are on disk.
@@ -51,11 +52,11 @@ class FindingDesk {
     std::set<findings::Key> keys{};
     std::function<void()> stored{};
   };
-  void kept(const findings::Key& key);
+  void on_stored(const findings::Key& key);
 
   Outputs outputs_;
   std::deque<Waiting> waiting_{};
-  std::map<std::string, Robot> robots_{};
+  std::map<std::string, Report> robots_{};
   bool reported_full_{};
   findings::FindingStore finding_store_;
 };

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "basestation/model/json_reports.hpp"
+#include "basestation/model/json.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
 #include "core/command/words.hpp"
@@ -45,7 +45,7 @@ FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, co
                    .position = f->position,
                    .text = command::clean(f->text, Finding::kText)};
     if (const double seconds_ago = age(*f, fleet); seconds_ago >= 0) item.age = seconds_ago;
-    if (const FindingBook::Entry* entry = book.find(f->key)) {
+    if (const FindingBook::Judgement* entry = book.find(f->key)) {
       item.number = entry->number;
       item.verdict = entry->verdict;
       item.note = entry->note;
@@ -56,7 +56,7 @@ FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, co
   for (const auto& [robot, says] : desk.robots())
     if (robots.empty() || std::find(robots.begin(), robots.end(), robot) != robots.end())
       report.at_robots.push_back(
-          {.robot = robot, .stored = says.kept, .here = here[robot], .overflowed = says.overflowed});
+          {.robot = robot, .stored = says.stored, .here = here[robot], .overflowed = says.overflowed});
   return report;
 }
 

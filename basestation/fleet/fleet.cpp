@@ -8,6 +8,7 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
+#include "basestation/model/action.hpp"
 #include "core/command/words.hpp"
 #include "core/contract/authority.hpp"
 #include "core/contract/discovery.hpp"
@@ -45,6 +46,9 @@ Robot described(const RobotView& robot, Time now) {
   out.stopped = robot.stopped || !robot.latches.empty();
   for (const ComponentHealth& part : robot.components)
     if (!part.healthy) out.troubles.push_back(part.name + " " + word(part.state));
+  // The station adds a centred stick to a mode that is driven by hand.
+  for (ModeOption& option : out.options)
+    if (can_enter(option)) option = {option.mode, true, Reason::none};
   return out;
 }
 

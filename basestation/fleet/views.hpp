@@ -41,7 +41,8 @@ struct RobotView : Robot {
   std::vector<ComponentHealth> components{};
 };
 
-/// What front ends receive of a robot.
+/// What front ends receive of a robot. The station adds a centred stick to a mode that is driven by hand: a
+/// mode that only lacks the stick is available.
 Robot described(const RobotView& robot, Time now);
 
 struct StationView {

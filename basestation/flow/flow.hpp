@@ -44,13 +44,13 @@ class Flow : public std::enable_shared_from_this<Flow> {
   virtual void stream_refused(Reason, const std::string& /*text*/) {}
   const std::string& robot() const { return robot_; }
   /// Whether the flow has ended and can be dropped.
-  virtual bool over() const { return told_; }
+  virtual bool over() const { return reported_; }
 
  protected:
   const RobotView* view() const { return dependencies_.fleet.robot(robot_); }
   void notify(Answer answer) {
-    if (told_) return;
-    told_ = true;
+    if (reported_) return;
+    reported_ = true;
     answer.robot = robot_;
     done_(answer);
   }
@@ -60,7 +60,7 @@ class Flow : public std::enable_shared_from_this<Flow> {
  private:
   std::string robot_;
   Done done_;
-  bool told_{false};
+  bool reported_{false};
 };
 
 }  // namespace adit::station

@@ -12,16 +12,10 @@ Flows::Chosen Flows::of(std::uint64_t handle) const {
   return chosen;
 }
 
-Flows::Chosen Flows::of(const std::string& robot) const {
-  Chosen chosen;
-  for (const auto& [handle, flow] : flows_)
-    if (flow->robot() == robot) chosen.push_back(flow);
-  return chosen;
-}
-
 Flows::Chosen Flows::drives_of(const std::string& robot) const {
-  Chosen drives = of(robot);
-  std::erase_if(drives, [](const auto& flow) { return !flow->is_drive(); });
+  Chosen drives;
+  for (const auto& [handle, flow] : flows_)
+    if (flow->is_drive() && flow->robot() == robot) drives.push_back(flow);
   return drives;
 }
 
@@ -46,7 +40,7 @@ void Flows::set_velocity(std::uint64_t handle, const StickVelocity& velocity) {
 }
 
 void Flows::stream_refused(const std::string& robot, Reason reason, const std::string& text) {
-  for (const auto& flow : of(robot)) flow->stream_refused(reason, text);
+  for (const auto& drive : drives_of(robot)) drive->stream_refused(reason, text);
 }
 
 void Flows::end_drives(const std::string& robot, Reason reason) {

@@ -20,7 +20,7 @@ class Flows {
   void cancel(std::uint64_t handle);
   /// Sets the stick of a drive; other flows ignore it.
   void set_velocity(std::uint64_t handle, const StickVelocity& velocity);
-  /// Reports the refusal of a robot's joystick stream to its flows.
+  /// Reports the refusal of a robot's joystick stream to its drives.
   void stream_refused(const std::string& robot, Reason reason, const std::string& text);
   void end_drives(const std::string& robot, Reason reason);
   /// Returns a handler of the robot's answer to a command that requests a mode: if accepted, it ends the
@@ -31,7 +31,6 @@ class Flows {
  private:
   using Chosen = std::vector<std::shared_ptr<Flow>>;
   Chosen of(std::uint64_t handle) const;
-  Chosen of(const std::string& robot) const;
   Chosen drives_of(const std::string& robot) const;
 
   std::multimap<std::uint64_t, std::shared_ptr<Flow>> flows_{};

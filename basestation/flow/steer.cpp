@@ -200,7 +200,7 @@ void Steer::finish(Reason reason, const std::string& text) {
   result_.reason = reason;
   result_.text = success ? exceeded_limits_text() : text;
   if (const RobotView* robot_now = view()) result_.holder = robot_now->holder;
-  // After a failure the robot is not kept in its mode; a cancelled drive is none.
+  // After a failure the robot does not stay in its mode; a cancelled drive is none.
   if (!success && reason != Reason::cancelled) hold_centred_after_ = false;
   const bool streaming = dependencies_.stick.streaming(robot());
   enter_phase(Phase::stopping);

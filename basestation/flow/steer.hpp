@@ -6,6 +6,7 @@
 
 namespace adit::station {
 
+/// The purpose of a Steer flow, and its values.
 struct SteerParams {
   enum class Purpose : std::uint8_t {
     enter,   ///< Requests a manual mode, then streams a centred stick while the robot is in it.

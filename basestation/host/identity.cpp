@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdlib>
 #include <cstring>
 
@@ -26,11 +27,9 @@ Result<Id> read_id(const std::string& path) {
   const ssize_t size = ::read(file.get(), text, sizeof text);
   Id id{};
   bool good = size == 33 && text[32] == '\n';
-  for (std::size_t i = 0; good && i < 32; ++i) {
-    const char* digits = "0123456789abcdef";
-    const char* digit = text[i] != 0 ? std::strchr(digits, text[i]) : nullptr;
-    good = digit != nullptr;
-    if (good) id[i / 2] = static_cast<std::uint8_t>((id[i / 2] << 4) | (digit - digits));
+  for (std::size_t i = 0; good && i < id.size(); ++i) {
+    const char* digits = text + 2 * i;
+    good = std::from_chars(digits, digits + 2, id[i], 16).ptr == digits + 2;
   }
   if (!good) return {Reason::malformed, path + " is damaged; remove it and the station gets a new identity"};
   return id;

@@ -78,16 +78,14 @@ void LiveStation::on_strand(const std::function<void()>& work) {
   done.get_future().wait();
 }
 
-Outcome LiveStation::execute(const std::string& line, std::chrono::milliseconds limit) {
+Outcome LiveStation::execute(const command::Request& request, std::chrono::milliseconds limit) {
   const auto ended = std::make_shared<std::promise<Outcome>>();
   auto future = ended->get_future();
-  strand_->post([this, line, ended] {
-    station_->execute(line, [ended](const Outcome& outcome) { ended->set_value(outcome); });
+  strand_->post([this, request, ended] {
+    station_->execute(request, [ended](const Outcome& outcome) { ended->set_value(outcome); });
   });
   if (future.wait_for(limit) == std::future_status::ready) return future.get();
-  Outcome outcome{.exit_code = kExitNoAnswer, .error = "no answer\n"};
-  outcome.json = {{"exit", kExitNoAnswer}, {"ok", false}, {"reason", "no_answer"}};
-  return outcome;
+  return failed_outcome(kExitNoAnswer, {Reason::no_answer, "no answer"});
 }
 
 }  // namespace adit::station::host

@@ -27,11 +27,9 @@ class LiveStation {
 
   Station& station() { return *station_; }
   Executor& strand() { return *strand_; }
-  /// Runs a line and waits for its end, at most `limit`, after which the outcome is no_answer. Do not call it
-  /// on the strand.
-  Outcome execute(const std::string& line, std::chrono::milliseconds limit);
-  /// Releases all robots as `down` does, when the station has to end; takes at most 1 s.
-  void release_all() { (void)execute("down", std::chrono::milliseconds(1000)); }
+  /// Runs a command and waits for its end, at most `limit`, after which the outcome is no_answer. Do not call
+  /// it on the strand.
+  Outcome execute(const command::Request& request, std::chrono::milliseconds limit);
 
  private:
   LiveStation() = default;

@@ -42,7 +42,8 @@ Result<void> run(const client::StationOptions& options, int ready_fd, const clie
                              {"domain", options.domain},         {"link", options.link},
                              {"interfaces", options.interfaces}, {"peers", options.peers}};
   (*server)->serve((*live)->station(), (*live)->strand(), hello, signals.get());
-  (*live)->release_all();
+  // Releases all robots.
+  (void)(*live)->execute(command::Request(command::verb("down")), std::chrono::seconds(1));
   return {};
 }
 

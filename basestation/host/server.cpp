@@ -16,10 +16,9 @@
 #include <filesystem>
 
 #include "basestation/client/connection.hpp"
-#include "basestation/host/snapshot.hpp"
-#include "basestation/model/outcome.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/model/json_reader.hpp"
+#include "basestation/model/outcome.hpp"
 #include "core/command/parse.hpp"
 #include "core/command/words.hpp"
 
@@ -38,12 +37,12 @@ constexpr auto kSignOfLife = 400ms;   // Longest: a client counts a station sile
 constexpr std::size_t kMaxTiles = 3;  // In one answer: a tile takes up to 0.1 MB as text.
 constexpr std::size_t kMaxEventText = 400;  // Length of an outcome's text in the event for the other clients.
 
-/// The outcome of a request that was not begun.
-json busy(const std::string& why) {
-  const json script{
-      {"exit", kExitRefused}, {"ok", false}, {"reason", name(Reason::queue_full)}, {"error", why}};
-  return outcome_json(kExitRefused, "", why + "\n", script);
+json json_of(const Outcome& outcome) {
+  return outcome_json(outcome.exit_code, outcome.text, outcome.error, outcome.json);
 }
+
+/// The outcome of a request that was not begun.
+json busy(const std::string& why) { return json_of(failed_outcome(kExitRefused, {Reason::queue_full, why})); }
 
 /// Parses a command line; a file in it is relative to `folder`. Errors: as of command::parse().
 Result<command::Request> parsed(const std::string& line, const std::string& folder) {
@@ -191,18 +190,12 @@ bool Server::push(Client& client) {
   return true;
 }
 
-void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const json& request) {
+void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const std::string& line,
+                   const std::string& robot) {
   const auto handle = std::make_shared<std::uint64_t>(0);
   client.open[id] = handle;
-  const auto text = [&](const char* key) {
-    const auto found = request.find(key);
-    return found != request.end() && found->is_string() ? found->get<std::string>() : std::string();
-  };
-  const std::string line = text("do");
-  const std::string robot = text("teleop");
   const auto answer = [this, number, id](const Outcome& outcome) {
-    const json ended = outcome_json(outcome.exit_code, outcome.text, outcome.error, outcome.json);
-    hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", ended}}});
+    hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", json_of(outcome)}}});
   };
   const bool posted = strand_->post([this, number, id, line, robot, handle, front_end = client.front_end,
                                      folder = client.folder, pid = client.pid, answer] {
@@ -252,52 +245,52 @@ void Server::ask_map(std::uint64_t number, Client& client, const json& wanted) {
   if (!client.map_asked) answer(client, {{"wrong", "the station has too much to do"}});
 }
 
-void Server::handle(std::uint64_t number, Client& client, const std::string& line) {
-  const json request = json::parse(line, nullptr, false);
-  const auto wrong = [&](const char* text) { answer(client, {{"wrong", text}}); };
+void Server::handle(std::uint64_t number, Client& client, const std::string& text) {
+  const json request = json::parse(text, nullptr, false);
+  const auto wrong = [&](const std::string& why) { answer(client, {{"wrong", why}}); };
   if (!request.is_object()) return wrong("a JSON object was expected");
-  const auto integer = [&](const char* key) -> std::int64_t {
-    const auto found = request.find(key);
-    return found != request.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
-  };
-  if (request.contains("hello")) return answer(client, {{"hello", hello_}});
-  if (request.contains("follow")) {
+  std::int64_t id = 0, cancelled = 0;
+  std::string front_end, folder = "/", line, robot, misfit;
+  std::array<double, 3> stick{};
+  JsonReader in(request, misfit);
+  in.read("id", id);
+  in.read("cancel", cancelled);
+  in.read("front_end", front_end);
+  in.read("folder", folder);
+  in.read("do", line);
+  in.read("teleop", robot);
+  in.read("stick", stick);
+  if (!misfit.empty()) return wrong("'" + misfit + "' does not fit");
+  if (in.has("hello")) return answer(client, {{"hello", hello_}});
+  if (in.has("follow")) {
     if (!std::exchange(client.follows, true) && followers_++ == 0) {
       newest_.reset();  // It was not followed for a while and is old.
       newest_world_.reset();
     }
-    client.sent.reset();  // It gets the whole state, also if it asks again.
+    client.sent.reset();  // It gets the complete state, also if it asks again.
     return ask_world();
   }
-  if (request.contains("notices")) return void(client.notices = true);
-  if (const auto name = request.find("front_end"); name != request.end()) {
-    if (!name->is_string() || !command::valid_name(name->get<std::string>()))
-      return wrong("a front end has a name of 1 to 32 of A-Z a-z 0-9 _ -");
-    client.front_end = name->get<std::string>();
-    const auto folder = request.find("folder");
-    if (folder == request.end()) return;
-    if (!folder->is_string() || !folder->get<std::string>().starts_with('/'))
-      return wrong("a front end's folder is an absolute path");
-    client.folder = folder->get<std::string>();
+  if (in.has("notices")) return void(client.notices = true);
+  if (in.has("front_end")) {
+    if (!command::valid_name(front_end)) return wrong("a front end has a name of 1 to 32 of A-Z a-z 0-9 _ -");
+    client.front_end = front_end;
+    if (!folder.starts_with('/')) return wrong("a front end's folder is an absolute path");
+    if (in.has("folder")) client.folder = folder;
     return;
   }
-  if (const auto map = request.find("map"); map != request.end()) {
+  if (in.has("map")) {
     if (client.map_asked) return wrong("the map was asked for already");
-    return ask_map(number, client, *map);
+    return ask_map(number, client, request["map"]);
   }
-  if (request.contains("cancel")) {
-    const auto found = client.open.find(integer("cancel"));
+  if (in.has("cancel")) {
+    const auto found = client.open.find(cancelled);
     if (found != client.open.end())
       strand_->post_control([station = station_, h = found->second] { station->cancel(*h); });
     return;
   }
-  const std::int64_t id = integer("id");
   if (id <= 0) return wrong("an id above 0 was expected");
-  if (request.contains("stick")) {
-    std::array<double, 3> stick{};
-    std::string misfit;
-    JsonReader(request, misfit).read("stick", stick);
-    if (!misfit.empty() || std::any_of(stick.begin(), stick.end(), [](double v) { return std::isnan(v); }))
+  if (in.has("stick")) {
+    if (std::ranges::any_of(stick, [](double v) { return std::isnan(v); }))
       return wrong("a stick has three numbers");
     for (double& axis : stick) axis = std::clamp(axis, -20.0, 20.0);
     const StickVelocity velocity{stick[0], stick[1], stick[2]};
@@ -306,17 +299,12 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& lin
       strand_->post([station = station_, h = found->second, velocity] { station->stick(*h, velocity); });
     return;
   }
-  const auto text = [&](const char* key) {
-    const auto found = request.find(key);
-    return found != request.end() && found->is_string();
-  };
-  if (!text("do") && !text("teleop")) return wrong("no request that this version knows");
-  if (text("teleop") && !command::valid_name(request["teleop"].get<std::string>()))
-    return wrong("teleop wants a robot's name");
+  if (!in.has("do") && !in.has("teleop")) return wrong("no request that this version knows");
+  if (in.has("teleop") && !command::valid_name(robot)) return wrong("teleop wants a robot's name");
   if (client.open.contains(id)) return wrong("the id is in use");
   if (client.open.size() >= kMaxOpen)
     return answer(client, {{"id", id}, {"outcome", busy("this program asks for too much at once")}});
-  begin(number, client, id, request);
+  begin(number, client, id, line, robot);
 }
 
 void Server::deliver(const Reply& reply) {
@@ -362,7 +350,7 @@ void Server::deliver() {
 }
 
 void Server::changed(const Station& station) {
-  if (followers_ > 0) take(world_of(station));
+  if (followers_ > 0) take(station.world());
 }
 
 void Server::take(World world) {
@@ -374,7 +362,7 @@ void Server::take(World world) {
 }
 
 void Server::ask_world() {
-  strand_->post([this] { take(world_of(*station_)); });
+  strand_->post([this] { take(station_->world()); });
 }
 
 bool Server::follow(Client& client, Clock::time_point now) {

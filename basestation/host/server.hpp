@@ -100,8 +100,10 @@ class Server {
   Server() = default;
   void accept_client();
   void read(std::uint64_t number, Client& client);
-  void handle(std::uint64_t number, Client& client, const std::string& line);
-  void begin(std::uint64_t number, Client& client, std::int64_t id, const nlohmann::json& request);
+  void handle(std::uint64_t number, Client& client, const std::string& text);
+  /// Runs a command line, or manual control of a robot, as the client's request `id`.
+  void begin(std::uint64_t number, Client& client, std::int64_t id, const std::string& line,
+             const std::string& robot);
   void ask_map(std::uint64_t number, Client& client, const nlohmann::json& wanted);
   /// Queues an answer; a client with too many unread ones is cut off.
   void answer(Client& client, const nlohmann::json& object);

@@ -9,7 +9,7 @@
 
 namespace adit::station::input {
 
-/// What the operator's hands do now. Axes: forward, left, turn left; shares of the robot's limits, [-1, 1].
+/// The state of the operator's hands. Axes: forward, left, turn left; shares of the robot's limits, [-1, 1].
 struct Hands {
   bool touching{};  ///< A finger is on the stick of the screen: its own dead man's switch.
   std::array<double, 3> touched{};
@@ -17,7 +17,7 @@ struct Hands {
   Gamepad::State pad{};
 };
 
-/// What is known of the driven robot and of the window.
+/// The state of the driven robot and of the window.
 struct DriveView {
   const Robot* robot{};  ///< Null: it is not known any more.
   double silent{};       ///< Time since the station's last snapshot, s.

@@ -21,41 +21,24 @@ void KeyStick::push(Axis& axis, double value, Clock::time_point now) {
 }
 
 bool KeyStick::press(int key, Clock::time_point now) {
-  switch (key) {
-    case key_up:
-    case 'w':
-      push(forward_, 1.0, now);
-      return true;
-    case key_down:
-    case 's':
-      push(forward_, -1.0, now);
-      return true;
-    case key_left:
-    case 'a':
-      push(turning_, 1.0, now);
-      return true;
-    case key_right:
-    case 'd':
-      push(turning_, -1.0, now);
-      return true;
-    case 'q':
-      push(sideways_, 1.0, now);
-      return true;
-    case 'e':
-      push(sideways_, -1.0, now);
-      return true;
-    case ' ':
-      forward_ = sideways_ = turning_ = {};
-      return true;
-    case '+':
-      scale_ = std::min(1.0, scale_ + 0.1);
-      return true;
-    case '-':
-      scale_ = std::max(0.1, scale_ - 0.1);
-      return true;
-    default:
-      return false;
+  struct Push {
+    int arrow{}, letter{};
+    Axis KeyStick::*axis{};
+    double value{};
+  };
+  static constexpr std::array kPushes{
+      Push{key_up, 'w', &KeyStick::forward_, 1.0},   Push{key_down, 's', &KeyStick::forward_, -1.0},
+      Push{key_left, 'a', &KeyStick::turning_, 1.0}, Push{key_right, 'd', &KeyStick::turning_, -1.0},
+      Push{'q', 'q', &KeyStick::sideways_, 1.0},     Push{'e', 'e', &KeyStick::sideways_, -1.0}};
+  for (const Push& row : kPushes) {
+    if (key != row.arrow && key != row.letter) continue;
+    push(this->*row.axis, row.value, now);
+    return true;
   }
+  if (key == ' ') forward_ = sideways_ = turning_ = {};
+  if (key == '+') scale_ = std::min(1.0, scale_ + 0.1);
+  if (key == '-') scale_ = std::max(0.1, scale_ - 0.1);
+  return key == ' ' || key == '+' || key == '-';
 }
 
 std::array<double, 3> KeyStick::velocity(Clock::time_point now) const {

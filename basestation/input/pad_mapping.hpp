@@ -11,7 +11,7 @@
 
 namespace adit::station::input {
 
-/// What a button or an axis of the game controller does.
+/// An action of a button or an axis of the game controller.
 enum class PadAction : std::uint8_t {
   // Axes.
   forward,
@@ -40,7 +40,7 @@ struct PadInput {
   bool operator==(const PadInput&) const = default;
 };
 
-/// Which input does what. An axis that stands for a button counts as pressed beyond its half.
+/// The assignment of inputs to actions. An axis that stands for a button counts as pressed beyond its half.
 class PadMapping {
  public:
   /// The layout of docs/gui.md.

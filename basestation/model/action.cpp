@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "basestation/model/text.hpp"
+
 namespace adit::station {
 namespace {
 
@@ -123,8 +125,7 @@ std::string id_of(const Action& action) {
 
 std::string label_of(const Action& action) {
   if (action.mode.empty() && !action.info->label.empty()) return std::string(action.info->label);
-  std::string label = action.mode.empty() ? action.command : action.mode;
-  std::replace(label.begin(), label.end(), '_', ' ');
+  std::string label = code_text(action.mode.empty() ? action.command : action.mode);
   if (!label.empty() && label[0] >= 'a' && label[0] <= 'z')
     label[0] = static_cast<char>(label[0] - 'a' + 'A');
   return label;

@@ -81,12 +81,6 @@ void add_parts(const Named& before, double at_before, const Named& now, double a
   }
 }
 
-Result<StationSummary> station_from(const json& object) {
-  return value_from<StationSummary>(object, "a station's");
-}
-
-Result<AgentRate> rate_from(const json& object) { return value_from<AgentRate>(object, "a link report's"); }
-
 }  // namespace
 
 EncodedWorld encoded(const World& world) {
@@ -113,8 +107,8 @@ Delta difference(const EncodedWorld& before, const EncodedWorld& now) {
   return delta;
 }
 
-template <class T, class Read>
-Result<void> WorldBuilder::merge(const json& delta, const char* key, double at, const Read& read,
+template <class T>
+Result<void> WorldBuilder::merge(const json& delta, const char* key, double at, const char* what,
                                  Parts<T>& parts) {
   const auto changed = delta.find(key);
   if (changed == delta.end()) return {};
@@ -128,38 +122,34 @@ Result<void> WorldBuilder::merge(const json& delta, const char* key, double at, 
     if (!keys.is_object())
       return {Reason::malformed, std::string("a difference's '") + key + "' does not fit"};
     const auto known = parts.find(name);
-    json whole = known == parts.end() ? json::object() : known->second.json;
+    json complete = known == parts.end() ? json::object() : known->second.json;
     for (const auto& [changed_key, value] : keys.items())
-      if (changed_key != "gone") whole[changed_key] = value;
+      if (changed_key != "gone") complete[changed_key] = value;
     if (const auto gone = keys.find("gone"); gone != keys.end() && gone->is_array())
       for (const json& word : *gone)
-        if (word.is_string()) whole.erase(word.get<std::string>());
-    auto value = read(whole);
+        if (word.is_string()) complete.erase(word.get<std::string>());
+    auto value = value_from<T>(complete, what);
     if (!value) return value.error();
     // Without an age it was not heard since.
     const double heard =
-        keys.contains("age") || known == parts.end() ? at - age_of(whole) : known->second.heard;
-    parts[name] = {std::move(whole), std::move(*value), heard};
+        keys.contains("age") || known == parts.end() ? at - age_of(complete) : known->second.heard;
+    parts[name] = {std::move(complete), std::move(*value), heard};
   }
   return {};
 }
 
-Result<void> WorldBuilder::start(const json& whole) {
-  auto world = world_from(whole);
+Result<void> WorldBuilder::start(const json& complete) {
+  auto world = world_from(complete);
   if (!world) return world.error();
   *this = {};
   at_ = world->at;
   const EncodedWorld parts = encoded(*world);
   head_ = parts.head;
   head_world_ = {.station = world->station, .link = world->link, .commands = world->commands};
-  for (Robot& robot : world->robots) {
-    const double heard = at_ - robot.age;
-    robots_[robot.name] = {parts.robots.at(robot.name), robot, heard};
-  }
-  for (StationSummary& station : world->stations) {
-    const double heard = at_ - station.age;
-    stations_[station.name] = {parts.stations.at(station.name), station, heard};
-  }
+  for (const Robot& robot : world->robots)
+    robots_[robot.name] = {parts.robots.at(robot.name), robot, at_ - robot.age};
+  for (const StationSummary& station : world->stations)
+    stations_[station.name] = {parts.stations.at(station.name), station, at_ - station.age};
   for (const auto& [agent, rate] : world->traffic)
     traffic_[agent] = {parts.traffic.at(agent), rate, at_ - rate.age};
   for (const Notice& notice : world->notices) notices_.push_back({{}, notice, at_ - notice.age});
@@ -177,9 +167,9 @@ Result<void> WorldBuilder::apply(const json& delta) {
     if (!world) return world.error();
     head_world_ = std::move(*world);
   }
-  if (auto merged = merge(delta, "robots", at_, robot_from, robots_); !merged) return merged;
-  if (auto merged = merge(delta, "stations", at_, station_from, stations_); !merged) return merged;
-  return merge(delta, "traffic", at_, rate_from, traffic_);
+  if (auto merged = merge(delta, "robots", at_, "a robot's", robots_); !merged) return merged;
+  if (auto merged = merge(delta, "stations", at_, "a station's", stations_); !merged) return merged;
+  return merge(delta, "traffic", at_, "a link report's", traffic_);
 }
 
 void WorldBuilder::add(const Notice& notice) {

@@ -19,14 +19,14 @@ struct EncodedWorld {
 };
 EncodedWorld encoded(const World& world);
 
-/// How soon a front end should read a difference.
+/// The urgency of a difference for a front end.
 enum class Urgency : std::uint8_t {
   none,    ///< Nothing differs but ages that grew with time.
   motion,  ///< Only values that change all the time: poses, charge, rates.
   change,  ///< Something that an operator acts on.
 };
 
-/// What leads from one world to a later one.
+/// A difference that leads from one world to a later one.
 struct Delta {
   nlohmann::json json{};
   Urgency urgency{};
@@ -35,11 +35,11 @@ struct Delta {
 /// the keys that differ are in it.
 Delta difference(const EncodedWorld& before, const EncodedWorld& now);
 
-/// The front end's side: the world after a whole one and all differences since.
+/// The front end's side: the world after a complete one and all differences since.
 class WorldBuilder {
  public:
   /// Takes {"at": ..., ...} of json_of(World).
-  Result<void> start(const nlohmann::json& whole);
+  Result<void> start(const nlohmann::json& complete);
   /// Errors: malformed; then only start() helps.
   Result<void> apply(const nlohmann::json& delta);
   /// Adds a notice; the newest kMaxNotices are stored.
@@ -59,8 +59,8 @@ class WorldBuilder {
   };
   template <class T>
   using Parts = std::map<std::string, Part<T>, NaturalOrder>;
-  template <class T, class Read>
-  static Result<void> merge(const nlohmann::json& delta, const char* key, double at, const Read& read,
+  template <class T>
+  static Result<void> merge(const nlohmann::json& delta, const char* key, double at, const char* what,
                             Parts<T>& parts);
 
   double at_{};

@@ -10,12 +10,9 @@ namespace adit::station {
 using nlohmann::json;
 
 void fields(JsonReader& in, MapTile& tile);
+void fields(JsonReader& in, MapUpdate& update);
 
 namespace {
-
-Error malformed(const char* what, const std::string& key) {
-  return {Reason::malformed, std::string(what) + " '" + key + "' does not fit"};
-}
 
 /// Cells as runs: value, count, value, count, ...
 constexpr int kLowestVoxel = 32768;  // Added, as the numbers of a list have no sign.
@@ -51,26 +48,13 @@ json columns_json(const std::vector<VoxelRun>& runs) {
 
 std::string line_of(const json& value) { return value.dump(-1, ' ', true, json::error_handler_t::replace); }
 
-json json_of(const Counts& counts) { return JsonWriter::of(counts); }
-json json_of(const Robot& robot) { return JsonWriter::of(robot); }
-json json_of(const Notice& notice) { return JsonWriter::of(notice); }
-json json_of(const StationSummary& station) { return JsonWriter::of(station); }
-json json_of(const AgentRate& rate) { return JsonWriter::of(rate); }
-json json_of(const CommandEvent& event) { return JsonWriter::of(event); }
-
-json json_of(const World& world) {
-  json out;
-  JsonWriter io(out);
-  io.field("at", world.at);
-  io.field("station", world.station);
-  io.field("link", world.link);
-  io.field("commands", world.commands);
-  io.field("robots", world.robots);
-  io.field("stations", world.stations);
-  io.field("notices", world.notices);
-  io.field("traffic", world.traffic);
-  return out;
-}
+template json json_of(const Counts& counts);
+template json json_of(const Robot& robot);
+template json json_of(const Notice& notice);
+template json json_of(const StationSummary& station);
+template json json_of(const AgentRate& rate);
+template json json_of(const World& world);
+template json json_of(const CommandEvent& event);
 
 json json_of(const MapUpdate& update) {
   json tiles = json::array();
@@ -134,36 +118,18 @@ void fields(JsonReader& in, MapTile& tile) {
   }
 }
 
-Result<Notice> notice_from(const json& object) { return value_from<Notice>(object, "a notice's"); }
-
-Result<World> world_from(const json& object) {
-  World world;
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("at", world.at);
-  in.read("station", world.station);
-  in.read("link", world.link);
-  in.read("commands", world.commands);
-  std::optional<Error> inner;
-  in.each("robots", [&](const json& row) {
-    auto robot = robot_from(row);
-    if (!robot) return inner = robot.error(), false;
-    world.robots.push_back(std::move(*robot));
-    return true;
-  });
-  in.read("stations", world.stations);
-  in.each("notices", [&](const json& row) {
-    auto notice = notice_from(row);
-    if (!notice) return inner = notice.error(), false;
-    world.notices.push_back(std::move(*notice));
-    return true;
-  });
-  in.read("traffic", world.traffic);
-  if (inner) return *inner;
-  if (!wrong.empty()) return malformed("a snapshot's", wrong);
-  return world;
+void fields(JsonReader& in, MapUpdate& update) {
+  in.read("resolution", update.resolution);
+  in.read("revision", update.revision);
+  in.read("run", update.run);
+  in.read("clock", update.clock);
+  in.read("tiles", update.tiles);
+  if (!(update.resolution >= 0.01 && update.resolution <= 10.0)) in.refuse("resolution");
 }
 
+Result<Notice> notice_from(const json& object) { return value_from<Notice>(object, "a notice's"); }
+
+Result<World> world_from(const json& object) { return value_from<World>(object, "a snapshot's"); }
 Result<Robot> robot_from(const json& object) { return value_from<Robot>(object, "a robot's"); }
 Result<CommandEvent> event_from(const json& object) {
   return value_from<CommandEvent>(object, "a command event's");
@@ -188,22 +154,12 @@ Result<CommandOutcome> outcome_from(const json& object) {
           outcome.answers.push_back(std::move(answer));
       }
   }
-  if (!wrong.empty()) return malformed("an outcome's", wrong);
+  if (!wrong.empty()) return {Reason::malformed, "an outcome's '" + wrong + "' does not fit"};
   return outcome;
 }
 
 Result<MapUpdate> map_update_from(const json& object) {
-  MapUpdate update;
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("resolution", update.resolution);
-  in.read("revision", update.revision);
-  in.read("run", update.run);
-  in.read("clock", update.clock);
-  in.read("tiles", update.tiles);
-  if (!(update.resolution >= 0.01 && update.resolution <= 10.0)) in.refuse("resolution");
-  if (!wrong.empty()) return malformed("a map update's", wrong);
-  return update;
+  return value_from<MapUpdate>(object, "a map update's");
 }
 
 }  // namespace adit::station

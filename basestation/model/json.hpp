@@ -17,13 +17,10 @@ namespace adit::station {
 /// A value as one line without the newline; bytes that are no UTF-8 are replaced.
 std::string line_of(const nlohmann::json& value);
 
-nlohmann::json json_of(const Counts& counts);
-nlohmann::json json_of(const Robot& robot);
-nlohmann::json json_of(const Notice& notice);
-nlohmann::json json_of(const StationSummary& station);
-nlohmann::json json_of(const AgentRate& rate);
-nlohmann::json json_of(const World& world);
-nlohmann::json json_of(const CommandEvent& event);
+/// For Counts, Robot, Notice, StationSummary, AgentRate, World, CommandEvent, and the reports of queries:
+/// HealthReport, NetworkReport, FoundReport.
+template <class T>
+nlohmann::json json_of(const T& value);
 nlohmann::json json_of(const MapUpdate& update);
 /// `script`: the outcome's object for scripts.
 nlohmann::json outcome_json(int exit_code, const std::string& text, const std::string& error,

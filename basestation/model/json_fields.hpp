@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "basestation/model/action.hpp"
+#include "basestation/model/json.hpp"
 #include "basestation/model/json_reader.hpp"
 #include "basestation/model/outcome.hpp"
 #include "basestation/model/world.hpp"
@@ -11,6 +11,11 @@ namespace adit::station {
 template <class Io, class T>
 using Of = typename Io::template Value<T>;
 
+template <class T>
+nlohmann::json json_of(const T& value) {
+  return JsonWriter::of(value);
+}
+
 template <class Io>
 void fields(Io& io, Of<Io, Epoch>& epoch) {
   io.field("start", epoch.start);
@@ -19,13 +24,9 @@ void fields(Io& io, Of<Io, Epoch>& epoch) {
 
 template <class Io>
 void fields(Io& io, Of<Io, ModeOption>& option) {
-  // What the station can enter: it adds a centred stick to a mode that is driven by hand.
-  const bool by_stick = !Io::kReads && !option.available && can_enter(option);
-  ModeOption shown = by_stick ? ModeOption{option.mode, true, Reason::none} : option;
-  io.field("mode", shown.mode);
-  io.field("available", shown.available);
-  io.field("reason", shown.reason);
-  if constexpr (Io::kReads) option = shown;
+  io.field("mode", option.mode);
+  io.field("available", option.available);
+  io.field("reason", option.reason);
 }
 
 template <class Io>
@@ -163,6 +164,18 @@ void fields(Io& io, Of<Io, AgentRate>& rate) {
   io.field("out", rate.out);
   io.field("in", rate.in);
   io.field("age", rate.age);
+}
+
+template <class Io>
+void fields(Io& io, Of<Io, World>& world) {
+  io.field("at", world.at);
+  io.field("station", world.station);
+  io.field("link", world.link);
+  io.field("commands", world.commands);
+  io.field("robots", world.robots);
+  io.field("stations", world.stations);
+  io.field("notices", world.notices);
+  io.field("traffic", world.traffic);
 }
 
 template <class Io>

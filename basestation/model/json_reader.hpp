@@ -42,15 +42,6 @@ class JsonReader {
   void field(const char* key, T& out) {
     read(key, out);
   }
-  /// The elements of an array; `take` returns whether an element fits.
-  template <class Take>
-  void each(const char* key, const Take& take_element) {
-    const auto found = object_.is_object() ? object_.find(key) : object_.end();
-    if (found == object_.end()) return;
-    if (!found->is_array() || found->size() > kMaxElements) return refuse(key);
-    for (const nlohmann::json& element : *found)
-      if (!take_element(element)) return refuse(key);
-  }
   void refuse(const std::string& key) {
     if (wrong_.empty()) wrong_ = key;
   }

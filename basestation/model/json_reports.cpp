@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "basestation/model/json_reports.hpp"
-
 #include <algorithm>
 #include <array>
 
-#include "basestation/model/outcome.hpp"
+#include "basestation/model/found.hpp"
+#include "basestation/model/health.hpp"
 #include "basestation/model/json_fields.hpp"
+#include "basestation/model/network.hpp"
+#include "basestation/model/outcome.hpp"
 #include "core/command/vocabulary.hpp"
 
 namespace adit::station {
@@ -141,10 +142,9 @@ Result<T> report_of(const CommandOutcome& outcome, const char* what) {
 
 }  // namespace
 
-json json_of(const RobotHealth& health) { return JsonWriter::of(health); }
-json json_of(const HealthReport& report) { return JsonWriter::of(report); }
-json json_of(const NetworkReport& report) { return JsonWriter::of(report); }
-json json_of(const FoundReport& report) { return JsonWriter::of(report); }
+template json json_of(const HealthReport& report);
+template json json_of(const NetworkReport& report);
+template json json_of(const FoundReport& report);
 
 Result<HealthReport> health_of(const CommandOutcome& outcome) {
   return report_of<HealthReport>(outcome, "a health report's");

@@ -54,7 +54,7 @@ struct LookedAt {
 /// Whether all of it is finite and within its bounds.
 bool valid(const LookedAt& place);
 
-/// What changed of the map after a revision.
+/// The tiles that changed after a revision.
 struct MapUpdate {
   double resolution{0.2};
   std::uint64_t revision{};  ///< All changes up to this one are in.

@@ -21,6 +21,11 @@ std::string fixed(double value, int decimals) {
   return out;
 }
 
+std::string code_text(std::string code) {
+  std::ranges::replace(code, '_', ' ');
+  return code;
+}
+
 std::string size_text(const Size& size) {
   if (size.length <= 0.0F || size.width <= 0.0F) return "-";
   return fixed(size.length, 2) + " x " + fixed(size.width, 2) +

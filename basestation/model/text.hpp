@@ -10,6 +10,8 @@ namespace adit::station {
 /// The value with so many digits after the point; "-" if it is not finite or too large to mean anything, and
 /// no minus sign before zero.
 std::string fixed(double value, int decimals);
+/// A code in words: "goal_missing" as "goal missing".
+std::string code_text(std::string code);
 /// A robot that does not know where it is states this standard deviation, the largest there is, m.
 inline constexpr double kUnknownPlace = 65.0;
 /// The size: "0.90 x 0.60 x 0.50 m"; "-" if unknown.

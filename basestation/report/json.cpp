@@ -3,7 +3,6 @@
 
 #include "basestation/fleet/summary.hpp"
 #include "basestation/model/json.hpp"
-#include "basestation/model/json_reports.hpp"
 #include "core/wire/qos.hpp"
 #include "core/wire/topics.hpp"
 
@@ -146,17 +145,15 @@ NetworkReport network_report(const Fleet& fleet, Time now) {
   return report;
 }
 
-json net_json(const Fleet& fleet, Time now) { return json_of(network_report(fleet, now)); }
-
-json health_json(const RobotView& robot) {
-  return json_of(RobotHealth{.robot = robot.name, .components = robot.components});
+HealthReport health_report(const std::vector<const RobotView*>& robots) {
+  HealthReport report;
+  for (const RobotView* robot : robots) report.robots.push_back({robot->name, robot->components});
+  return report;
 }
 
 json list_json(const Fleet& fleet, Time now) {
-  json robots = json::array(), stations = json::array();
-  for (const Robot& robot : robots_of(fleet, now)) robots.push_back(json_of(robot));
-  for (const StationSummary& station : stations_of(fleet, now)) stations.push_back(json_of(station));
-  return {{"robots", robots}, {"stations", stations}};
+  const json world = json_of(world_of(fleet, now));
+  return {{"robots", world["robots"]}, {"stations", world["stations"]}};
 }
 
 }  // namespace adit::station

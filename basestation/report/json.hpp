@@ -15,8 +15,7 @@ nlohmann::json notices_json(const Fleet& fleet, const std::string& robot, Time n
 nlohmann::json answer_json(const Answer& answer);
 nlohmann::json actions_json(const std::vector<Action>& actions);
 NetworkReport network_report(const Fleet& fleet, Time now);
-nlohmann::json net_json(const Fleet& fleet, Time now);
-nlohmann::json health_json(const RobotView& robot);
+HealthReport health_report(const std::vector<const RobotView*>& robots);
 
 /// Returns {"robots": [...], "stations": [...]}.
 nlohmann::json list_json(const Fleet& fleet, Time now);

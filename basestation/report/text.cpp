@@ -143,11 +143,11 @@ namespace {
 
 std::string ms_text(double seconds) { return fixed(seconds * 1e3, 0); }
 
-std::string links_text(const Fleet& fleet, Time now) {
+std::string links_text(const NetworkReport& report, const std::string& own_name) {
   std::vector<std::vector<std::string>> rows{{"LINK TO", "HEARD S AGO", "LOST FROM %", "LOST TO %",
                                               "ROUND TRIP MS", "B/S FROM", "B/S TO", "QUEUE MS", "STATE HZ",
                                               "SIGNAL DBM", "LINK"}};
-  for (const LinkReport& link : links(fleet, now)) {
+  for (const LinkReport& link : report.links) {
     const bool limited = link.sender && !link.sender->link.empty();
     const bool states = link.sender && link.sender->state_rate > 0.0;
     rows.push_back(
@@ -159,13 +159,17 @@ std::string links_text(const Fleet& fleet, Time now) {
          link.signal ? fixed(*link.signal, 0) : "-",
          limited ? link.sender->link + " " + fixed(link.sender->bandwidth / 1e3, 0) + " kbit/s" : "-"});
   }
+  std::map<std::string, SenderReport> senders;
+  if (report.sender) senders[own_name] = *report.sender;
+  for (const LinkReport& link : report.links)
+    if (link.sender) senders[link.agent] = *link.sender;
   std::string out = table(rows);
-  for (const auto& [agent, traffic] : fleet.traffic()) {
+  for (const auto& [agent, sender] : senders) {
     std::string classes;
     for (std::size_t p = 0; p < wire::kPriorities; ++p)
-      if (traffic.dropped[p] > 0)
-        classes += (classes.empty() ? "" : ", ") + std::string(priority_name(p)) + " " +
-                   std::to_string(traffic.dropped[p]);
+      if (const std::uint32_t dropped = sender.dropped.at(priority_name(p)); dropped > 0)
+        classes +=
+            (classes.empty() ? "" : ", ") + std::string(priority_name(p)) + " " + std::to_string(dropped);
     if (!classes.empty()) out += agent + " dropped before the air took it: " + classes + "\n";
   }
   return out;
@@ -173,16 +177,16 @@ std::string links_text(const Fleet& fleet, Time now) {
 
 }  // namespace
 
-std::string net_text(const Fleet& fleet, Time now, const std::string& link, double bandwidth) {
-  if (fleet.traffic().empty()) return "no link report has been heard yet; they come every 2 s\n";
+std::string net_text(const NetworkReport& report, const StationParams& params) {
+  if (report.agents.empty()) return "no link report has been heard yet; they come every 2 s\n";
   std::vector<std::vector<std::string>> rows{
       {"AGENT", "TOPIC", "B/S OUT", "N/S OUT", "B/S IN", "N/S IN", "DROPPED"}};
   double out_sum = 0.0, discovery_sum = 0.0;
-  for (const auto& [agent, traffic] : fleet.traffic()) {
+  for (const AgentTraffic& traffic : report.agents) {
     // On a full link the report period is 8 s.
-    const bool silent = now - traffic.last_heard > 4 * Fleet::kLostAfter;
-    std::string first = agent + (silent ? " (silent)" : "");
-    for (const TopicTraffic& row : traffic.topics) {
+    const bool silent = traffic.age > 4 * seconds(Fleet::kLostAfter);
+    std::string first = traffic.agent + (silent ? " (silent)" : "");
+    for (const TopicRate& row : traffic.topics) {
       rows.push_back({first, row.topic, fixed(row.bytes_out, 0), fixed(row.samples_out, 1),
                       fixed(row.bytes_in, 0), fixed(row.samples_in, 1), std::to_string(row.dropped)});
       first.clear();
@@ -197,22 +201,23 @@ std::string net_text(const Fleet& fleet, Time now, const std::string& link, doub
   }
   std::string out = table(rows) + "all agents send " + fixed(out_sum, 0) + " B/s, of it discovery " +
                     fixed(discovery_sum, 0) + " B/s";
-  if (bandwidth > 0.0)
-    out += ": " + fixed(out_sum * 8.0 / bandwidth * 100.0, 1) + " % of " + link + " (" +
-           fixed(bandwidth / 1000.0, 0) + " kbit/s)";
-  return out + "\n\n" + links_text(fleet, now);
+  if (params.bandwidth > 0.0)
+    out += ": " + fixed(out_sum * 8.0 / params.bandwidth * 100.0, 1) + " % of " + params.link + " (" +
+           fixed(params.bandwidth / 1000.0, 0) + " kbit/s)";
+  return out + "\n\n" + links_text(report, params.name);
 }
 
-std::string health_text(const std::vector<const RobotView*>& robots) {
+std::string health_text(const HealthReport& report) {
+  if (report.robots.empty()) return "no robot has been heard\n";
   std::vector<std::vector<std::string>> rows{
       {"ROBOT", "COMPONENT", "STATE", "POLICY", "SILENT S", "RESTARTS", "HUNG", "REMARK"}};
   std::string silent, note;
-  for (const RobotView* robot : robots) {
-    if (robot->components.empty()) silent += robot->name + ": no health report has been heard\n";
-    for (const ComponentHealth& part : robot->components) {
+  for (const RobotHealth& health : report.robots) {
+    if (health.components.empty()) silent += health.robot + ": no health report has been heard\n";
+    for (const ComponentHealth& part : health.components) {
       const bool component = command::is_component(part.name);
       if (!component) note = "POLICY -: no component of the agent; restart and policy do not take it\n";
-      rows.push_back({robot->name, part.name, word(part.state),
+      rows.push_back({health.robot, part.name, word(part.state),
                       !component       ? "-"
                       : part.automatic ? "auto"
                                        : "manual",

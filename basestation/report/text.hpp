@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "basestation/fleet/fleet.hpp"
+#include "basestation/fleet/station_params.hpp"
 #include "basestation/model/action.hpp"
 #include "basestation/model/text.hpp"
 #include "basestation/send/answer.hpp"
@@ -15,10 +16,10 @@ namespace adit::station {
 std::string list_text(const Fleet& fleet, Time now);
 /// The complete state of one robot.
 std::string status_text(const Fleet& fleet, const RobotView& robot, Time now);
-/// Bytes/s by agent and topic; `bandwidth` (bit/s, 0: unknown) relates the total to the link.
-std::string net_text(const Fleet& fleet, Time now, const std::string& link, double bandwidth);
+/// Bytes/s by agent and topic, and the links. `params`: of this station, for the share of its link.
+std::string net_text(const NetworkReport& report, const StationParams& params);
 /// A row for each component of the robots.
-std::string health_text(const std::vector<const RobotView*>& robots);
+std::string health_text(const HealthReport& report);
 /// A row for each command: whether it is valid now, and why not.
 std::string actions_text(const std::vector<Action>& actions);
 /// A route and its corners after the start: "12.3 m, 4.0 m of it not seen yet: 3.0 0.0, 12.0 0.5".

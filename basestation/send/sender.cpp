@@ -124,7 +124,6 @@ void Sender::start(Lane& to, std::shared_ptr<Pending> pending) {
   pending->first_sent = pending->waits_since = pending->repeated = strand_.now();
   renumber(to, *pending);
   ++counts_.sent;
-  if (on_sent) on_sent(pending->robot_command, pending->message.seq);
   const Duration repeat = pending->is_stop() ? params_.repeat_stop : params_.repeat;
   pending->timer = strand_.every(
       repeat, [this, robot = pending->robot_command.robot, weak = std::weak_ptr<Pending>(pending)] {
@@ -237,7 +236,7 @@ bool Sender::worth_another(const Pending& pending, const contract::Acknowledgeme
 
 void Sender::hear(const contract::Acknowledgement& ack) {
   const auto found = lanes_.find(ack.robot);
-  if (found == lanes_.end() || ack.seq == 0) return;
+  if (found == lanes_.end()) return;
   Lane& to = *found->second;
   std::shared_ptr<Pending> pending;
   for (const auto& candidate : {to.stop, to.current})

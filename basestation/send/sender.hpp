@@ -55,8 +55,6 @@ class Sender {
   std::vector<std::string> drop_unheard();
 
   const Counts& counts() const { return counts_; }
-  /// Called when a command is sent for the first time.
-  std::function<void(const RobotCommand&, std::uint64_t seq)> on_sent{};
   /// Called with the result of a stop that had been reported as not acknowledged.
   std::function<void(const Answer&)> on_late{};
 

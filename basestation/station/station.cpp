@@ -8,6 +8,7 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
+#include "basestation/fleet/summary.hpp"
 #include "core/command/words.hpp"
 #include "core/wire/typed.hpp"
 
@@ -80,16 +81,17 @@ void Station::observe() {
     content_.greet();
     presence_.announce_often();
   };
-  commands_.on_sent = [this](const RobotCommand& robot_command, std::uint64_t seq) {
-    if (on_sent) on_sent(robot_command, seq);
-  };
-  commands_.on_answer = [this](const Answer& answer) {
-    if (on_answer) on_answer(answer);
-    changed();
-  };
+  commands_.on_answer = [this] { changed(); };
   commands_.on_down = [this] {
     if (on_down) on_down();
   };
+}
+
+World Station::world() const {
+  World world = world_of(fleet_, now());
+  world.link = params_.link;
+  world.commands = counts();
+  return world;
 }
 
 /// Many samples come together: front ends receive their result once.

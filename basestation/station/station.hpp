@@ -11,6 +11,7 @@
 #include "basestation/content/content.hpp"
 #include "basestation/fleet/presence.hpp"
 #include "basestation/map/map_view.hpp"
+#include "basestation/model/world.hpp"
 #include "core/command/parse.hpp"
 
 namespace adit::station {
@@ -51,6 +52,8 @@ class Station {
   const Fleet& fleet() const { return fleet_; }
   const StationParams& params() const { return params_; }
   Time now() const { return strand_.now(); }
+  /// What front ends receive now.
+  World world() const;
   /// Counts of commands and answers since the start.
   const Counts& counts() const { return commands_.counts(); }
   /// The newest answer to this operator, from a robot or from the station itself.
@@ -71,8 +74,6 @@ class Station {
   bool closed() const { return !presence_.up(); }
 
   /// Observers, called on the strand. Set them before start().
-  std::function<void(const RobotCommand&, std::uint64_t seq)> on_sent{};
-  std::function<void(const Answer&)> on_answer{};
   std::function<void(const StoredNotice&)> on_notice{};
   std::function<void()> on_down{};
   /// Called when something that front ends receive may have changed, at most every 20 ms.

@@ -36,7 +36,7 @@ Result<std::vector<Sample>> run(const sim::Scenario& scenario, const std::shared
   params.workers = 1;
   params.make_agent = *sim::make_agent_factory("");
   params.on_station = [&](Duration now, const station::Station& station) {
-    const station::World seen = station::host::world_of(station);
+    const station::World seen = station.world();
     Sample& sample = samples[seen.station];
     sample.station = seen.station;
     sample.drives = sample.drives || std::ranges::any_of(seen.robots, &station::Robot::mine);

@@ -14,7 +14,6 @@
 #include "basestation/model/action.hpp"
 #include "basestation/model/delta.hpp"
 #include "basestation/model/json.hpp"
-#include "basestation/model/json_reports.hpp"
 #include "tests/gui/fixture.hpp"
 
 namespace {
@@ -76,15 +75,15 @@ void write_seeds(const std::string& folder) {
     std::ofstream(folder + "/seed_" + std::to_string(number++)) << reader << text;
   };
   const World world = gui::ten_robots();
-  const std::string whole = line_of({{"world", json_of(world)}}) + "\n";
+  const std::string complete = line_of({{"world", json_of(world)}}) + "\n";
   World later = world;
   later.at += 1.0;
   later.robots[0].x = 3.0F;
   later.robots.pop_back();
   later.notices.push_back({{.code = "idle", .robot = "r2"}, 4});
   write('c', line_of({{"world", json_of(world)}}) + "\n");
-  write('c', whole);
-  write('c', whole + line_of({{"delta", difference(encoded(world), encoded(later)).json}}) + "\n");
+  write('c', complete);
+  write('c', complete + line_of({{"delta", difference(encoded(world), encoded(later)).json}}) + "\n");
   write('c', R"({"hello":{"station":"op1","domain":77,"link":"mesh_500k","interfaces":["lo"],"peers":[]}})"
              "\n");
   write('c', line_of({{"notice", json_of(Notice{{.code = "blocked", .text = "every", .robot = "r1"}, 3})}}) +

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "basestation/model/json.hpp"
-#include "basestation/model/json_reports.hpp"
 #include "tests/gui/window_fixture.hpp"
 
 namespace adit::gui {

@@ -132,7 +132,7 @@ TEST_F(Cli, UnknownRobotIsExitOneAndNobodyThereIsExitThree) {
   EXPECT_EQ(run({"stop", "all"}).exit_code, 3);
 }
 
-TEST_F(Cli, AStationSaysWhereItStandsWhenItWasToldSo) {
+TEST_F(Cli, AStationSaysWhereItStandsIfThatIsGiven) {
   EXPECT_THAT(run({"list"}).out, testing::Not(HasSubstr(" at ")));
   EXPECT_THAT(run({"--name", "op2", "--at", "4", "5", "0.5", "list"}).out,
               HasSubstr("op2 (this one) at 4.0 5.0 0.5"));
@@ -217,7 +217,7 @@ TEST_F(Cli, AKilledStationIsReplacedAndKeepsItsIdentity) {
   EXPECT_EQ(before, after);
 }
 
-TEST_F(Cli, ADamagedIdentityIsToldAndNotReplaced) {
+TEST_F(Cli, ADamagedIdentityIsReportedAndNotReplaced) {
   run({"up"});
   run({"down"});
   std::ofstream(folder_.environment().at("XDG_STATE_HOME") + "/adit/op1.id") << "no identity\n";

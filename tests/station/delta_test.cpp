@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differences between worlds lead to the same world as a whole one.
+// Differences between worlds lead to the same world as a complete one.
 #include "basestation/model/delta.hpp"
 
 #include <gmock/gmock.h>

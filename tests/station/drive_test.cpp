@@ -106,7 +106,7 @@ TEST_F(DriveTest, ARobotThatHasNotHeardTheStickIsAskedAgain) {
 TEST_F(DriveTest, InSmartJoystickItStaysInThatMode) {
   EXPECT_EQ(execute("mode r1 smart_joystick").exit_code, 0);
   run_for(5s);
-  EXPECT_GT(r1().sticks().back().at, scheduler_.elapsed() - 100ms) << "the stick is kept, centred";
+  EXPECT_GT(r1().sticks().back().at, scheduler_.elapsed() - 100ms) << "the stick stays centred";
   const std::size_t commands = r1().commands().size();
   EXPECT_EQ(execute("drive r1 0.5 0 0").exit_code, 0);
   EXPECT_EQ(r1().commands().size(), commands) << "no mode was asked for";
@@ -116,7 +116,7 @@ TEST_F(DriveTest, InSmartJoystickItStaysInThatMode) {
   EXPECT_TRUE(ends_in_zero());
 }
 
-TEST_F(DriveTest, TheKeptStickIsLetGoWhenTheRobotLeavesTheMode) {
+TEST_F(DriveTest, TheCentredStickEndsWhenTheRobotLeavesTheMode) {
   execute("mode r1 manual");
   execute("mode r1 hold");
   run_for(1s);

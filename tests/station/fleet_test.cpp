@@ -128,8 +128,8 @@ TEST(Fleet, HealthNamesWhatIsNotUp) {
   EXPECT_EQ(robot.components[1].state, PartState::hung);
   EXPECT_EQ(robot.components[1].hung, 1u);
   EXPECT_EQ(robot.components[2].state, PartState::failed) << "a state of a later version";
-  EXPECT_THAT(health_text({&robot}), testing::HasSubstr("HUNG"));
-  EXPECT_THAT(health_json(robot)["components"][0]["policy"], "manual");
+  EXPECT_THAT(health_text(health_report({&robot})), testing::HasSubstr("HUNG"));
+  EXPECT_THAT(json_of(health_report({&robot}))["robots"][0]["components"][0]["policy"], "manual");
   EXPECT_THAT(json_of(described(robot, Time{}))["troubles"], testing::SizeIs(2));
 }
 
@@ -195,16 +195,16 @@ TEST(Fleet, ARouteIsWhatTheRobotFollowsUntilItSaysOtherwise) {
   EXPECT_TRUE(fleet.robot("r1")->route.points.empty());
 }
 
-TEST(Fleet, FirstHearingIsToldOnce) {
+TEST(Fleet, ObserverIsCalledOncePerRobot) {
   Fleet fleet("op1", kOwnId);
-  int told = 0;
-  fleet.on_robot = [&](const RobotView& robot) { told += robot.name == "r1"; };
+  int calls = 0;
+  fleet.on_robot = [&](const RobotView& robot) { calls += robot.name == "r1"; };
   radio::Capabilities capabilities;
   capabilities.name("r1");
   capabilities.platform("legged");
   fleet.hear(capabilities, at(0s));
   fleet.hear(state("r1"), at(0s));
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(calls, 1);
   EXPECT_EQ(fleet.robot("r1")->platform, "legged");
 }
 

@@ -202,20 +202,6 @@ TEST(ModelJson, ARobotComesBackAsItWas) {
   }
 }
 
-TEST(ModelJson, AModeIsAvailableWhereTheStationWouldEnterIt) {
-  Robot robot;
-  robot.name = "r1";
-  robot.options = {{.mode = "manual", .reason = Reason::joystick_stale},
-                   {.mode = "smart_joystick", .reason = Reason::stopped},
-                   {.mode = "waypoint", .reason = Reason::goal_missing}};
-  const json modes = json_of(robot)["modes"];
-  EXPECT_EQ(modes[0]["available"], true) << "the station adds the stick, as its text says";
-  EXPECT_EQ(modes[0]["reason"], "none");
-  EXPECT_EQ(modes[1]["available"], false);
-  EXPECT_EQ(modes[1]["reason"], "stopped");
-  EXPECT_EQ(modes[2]["available"], false);
-}
-
 TEST(ModelJson, AWorldComesBackAsItWas) {
   Draw draw(2);
   for (int i = 0; i < 300; ++i) {

@@ -10,12 +10,6 @@ using namespace std::chrono_literals;
 
 class PieceReaderTest : public testing::Test {
  protected:
-  PieceReaderTest() {
-    reader.add(transfer::Kind::findings, [this](const PieceReader::Piece& piece, PieceReader::Stored done) {
-      stored[piece.id] = std::move(done);
-      return result;
-    });
-  }
   void take(std::uint32_t session, std::uint32_t id, std::uint8_t kind = 3, const std::string& robot = "r1") {
     reader.take({robot, session, id, kind, 0, {}});
   }
@@ -31,7 +25,11 @@ class PieceReaderTest : public testing::Test {
   Time now{};
   Result<void> result{};
   std::map<std::uint32_t, PieceReader::Stored> stored{};
-  PieceReader reader{[this] { return now; }};
+  PieceReader reader{[this] { return now; },
+                     [this](const PieceReader::Piece& piece, PieceReader::Stored done) {
+                       stored[piece.id] = std::move(done);
+                       return result;
+                     }};
 };
 
 TEST_F(PieceReaderTest, AcknowledgesAPieceOnceItsContentIsStored) {
@@ -67,14 +65,10 @@ TEST_F(PieceReaderTest, CountsWhatIsRefusedByKind) {
   EXPECT_EQ(reader.refused(transfer::Kind::map_blocks), 0U);
 }
 
-TEST_F(PieceReaderTest, HandsAnUnknownKindToTheTakerOfTheRest) {
-  take(5, 1, 77);
-  EXPECT_FALSE(receipt().has(1)) << "there is none yet";
-  reader.otherwise([](const PieceReader::Piece&, const PieceReader::Stored& done) {
-    done();
-    return Result<void>{Reason::not_supported, "unknown"};
-  });
+TEST_F(PieceReaderTest, AcknowledgesARefusedPieceIfItsTakerWantsThat) {
+  result = {Reason::not_supported, "unknown"};
   take(5, 2, 77);
+  stored.at(2)();
   EXPECT_TRUE(receipt().has(2));
 }
 

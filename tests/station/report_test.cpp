@@ -37,6 +37,8 @@ TEST(Table, NumbersWithoutNegativeZero) {
   EXPECT_EQ(fixed(std::nan(""), 2), "-");
 }
 
+nlohmann::json net_json(const Fleet& fleet, Time now) { return json_of(network_report(fleet, now)); }
+
 radio::Capabilities described() {
   radio::Capabilities sample;
   sample.name("r1");
@@ -144,13 +146,26 @@ TEST(Report, StatusShowsTheNewestNoticesOfTheRobot) {
   EXPECT_EQ(notices_json(fleet, "", Time(10s)).size(), 8u);
 }
 
+TEST(Report, AModeIsAvailableWhereTheStationWouldEnterIt) {
+  RobotView robot;
+  robot.options = {{.mode = "manual", .reason = Reason::joystick_stale},
+                   {.mode = "smart_joystick", .reason = Reason::stopped},
+                   {.mode = "waypoint", .reason = Reason::goal_missing}};
+  const auto modes = json_of(described(robot, Time(1s)))["modes"];
+  EXPECT_EQ(modes[0]["available"], true) << "the station adds the stick, as its text says";
+  EXPECT_EQ(modes[0]["reason"], "none");
+  EXPECT_EQ(modes[1]["available"], false);
+  EXPECT_EQ(modes[1]["reason"], "stopped");
+  EXPECT_EQ(modes[2]["available"], false);
+}
+
 TEST(Report, HealthOfSeveralRobotsIsOneTable) {
   RobotView first, second, silent;
   first.name = "r1";
   second.name = "r2";
   silent.name = "r3";
   first.components = second.components = {{.name = "planner", .state = PartState::up, .text = {}}};
-  const std::string text = health_text({&first, &second, &silent});
+  const std::string text = health_text(health_report({&first, &second, &silent}));
   EXPECT_EQ(text.find("COMPONENT"), text.rfind("COMPONENT"));
   EXPECT_THAT(text, HasSubstr("r2     planner"));
   EXPECT_THAT(text, HasSubstr("r3: no health report has been heard\n"));
@@ -163,15 +178,15 @@ TEST(Report, HealthMarksWhatCannotBeRestarted) {
     return ComponentHealth{.name = name, .state = PartState::up, .automatic = true, .text = {}};
   };
   robot.components = {part("planner")};
-  EXPECT_THAT(health_text({&robot}), testing::Not(HasSubstr("no component")));
+  EXPECT_THAT(health_text(health_report({&robot})), testing::Not(HasSubstr("no component")));
   robot.components = {part("planner"), part("driver"), part("store")};
-  const std::string text = health_text({&robot});
+  const std::string text = health_text(health_report({&robot}));
   EXPECT_THAT(text, testing::ContainsRegex("planner +up +auto"));
   EXPECT_THAT(text, testing::ContainsRegex("driver +up +- "));
   EXPECT_THAT(text, testing::ContainsRegex("store +up +- "));
   EXPECT_THAT(text, HasSubstr("no component of the agent; restart and policy do not take it"));
-  EXPECT_EQ(health_json(robot)["components"][0]["can_restart"], true);
-  EXPECT_EQ(health_json(robot)["components"][2]["can_restart"], false);
+  EXPECT_EQ(json_of(health_report({&robot}))["robots"][0]["components"][0]["can_restart"], true);
+  EXPECT_EQ(json_of(health_report({&robot}))["robots"][0]["components"][2]["can_restart"], false);
 }
 
 TEST(Report, AmountsThatARobotCannotMeanAreNotKnown) {
@@ -246,7 +261,8 @@ TEST(Report, NetShowsDiscoveryApartAndTheShareOfTheLink) {
   row.bytes_out(500.0F);
   report.topics().push_back(row);
   fleet.hear(report, {.received = Time(1s)});
-  const std::string text = net_text(fleet, Time(2s), "mesh_100k", 100e3);
+  const std::string text =
+      net_text(network_report(fleet, Time(2s)), {.link = "mesh_100k", .bandwidth = 100e3});
   EXPECT_THAT(text, HasSubstr("adit/robot_state"));
   EXPECT_THAT(text, HasSubstr("discovery"));
   EXPECT_THAT(text, HasSubstr("5.0 % of mesh_100k"));
@@ -287,7 +303,7 @@ TEST(Report, NetShowsWhatTheLinkToEachRobotGives) {
   EXPECT_NEAR(link["lost_to"].get<double>(), 0.5, 1e-6);
   EXPECT_NEAR(link["round_trip"].get<double>(), 0.3, 1e-6);
   EXPECT_EQ(net_json(fleet, Time(5s))["agents"][0]["hears"], (nlohmann::json{{"op1", 0.5}, {"op2", 0.25}}));
-  EXPECT_THAT(net_text(fleet, Time(5s), "lan", 0), HasSubstr("ROUND TRIP MS"));
+  EXPECT_THAT(net_text(network_report(fleet, Time(5s)), {}), HasSubstr("ROUND TRIP MS"));
   peer.held(std::nanf(""));
   peer.lost(std::nanf(""));
   report.peers() = {peer};
@@ -332,7 +348,7 @@ TEST(Report, NetShowsThroughputQueueSignalAndProfile) {
   EXPECT_EQ(link["sender"]["link"], "mesh_100k");
   EXPECT_NEAR(link["sender"]["queue"].get<double>(), 0.25, 1e-6);
   EXPECT_EQ(link["sender"]["dropped"]["state"], 12);
-  const std::string text = net_text(fleet, Time(4s), "lan", 0);
+  const std::string text = net_text(network_report(fleet, Time(4s)), {});
   for (const char* part : {"2000", "250", "2.5", "-71", "mesh_100k 100 kbit/s", "r1 dropped", "state 12"})
     EXPECT_THAT(text, HasSubstr(part));
   report.queue(-1.0F);

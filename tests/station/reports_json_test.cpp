@@ -5,9 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "basestation/model/outcome.hpp"
 #include "basestation/model/json.hpp"
-#include "basestation/model/json_reports.hpp"
+#include "basestation/model/outcome.hpp"
 #include "core/time/random.hpp"
 
 namespace adit::station {

@@ -31,20 +31,20 @@ class Page {
   Page(int rows, int columns, bool colour)
       : rows_(static_cast<std::size_t>(rows)), columns_(static_cast<std::size_t>(columns)), colour_(colour) {}
 
-  /// Adds a line. `whole`: a colour for the complete line, including blanks up to the edge.
-  void line(const std::vector<Cell>& cells, const char* whole = "") {
+  /// Adds a line. `background`: a colour for the complete line, including blanks up to the edge.
+  void line(const std::vector<Cell>& cells, const char* background = "") {
     if (lines_.size() == rows_) return;
     std::string out;
     std::size_t used = 0;
-    if (colour_ && *whole != 0) out += sequence(whole);
+    if (colour_ && *background != 0) out += sequence(background);
     for (const Cell& cell : cells) {
       const std::string text = cell.text.substr(0, columns_ - used);
       used += text.size();
-      const bool own = colour_ && *cell.colour != 0 && *whole == 0 && !text.empty();
+      const bool own = colour_ && *cell.colour != 0 && *background == 0 && !text.empty();
       out += own ? sequence(cell.colour) + text + "\x1b[0m" : text;
     }
-    if (*whole != 0) out += std::string(columns_ - used, ' ');
-    if (colour_ && *whole != 0) out += "\x1b[0m";
+    if (*background != 0) out += std::string(columns_ - used, ' ');
+    if (colour_ && *background != 0) out += "\x1b[0m";
     lines_.push_back(out);
   }
   /// Permits `more` further lines.

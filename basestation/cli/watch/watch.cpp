@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "basestation/cli/watch/watch.hpp"
+#include "basestation/cli/commands.hpp"
 
 #include <unistd.h>
 
@@ -165,35 +165,25 @@ class Dashboard {
   void command(int key) {
     const std::string& name = state_.selected;
     const Robot* view = world_.robot(name);
-    switch (key) {
-      case 't':
-        return execute("take " + name);
-      case 'r':
-        return execute("release " + name);
-      case 'l':
-        return execute((view && view->locked ? "unlock " : "lock ") + name);
-      case 's':
-        return execute("stop " + name);
-      case 'e':
-        return execute("reset " + name);
-      case 'E':
-        return execute("reset " + name + " --override");
-      case 'h':
-        return execute("mode " + name + " hold");
-      case 'w':
-        return execute("mode " + name + " waypoint");
-      case 'g':
-        state_.typing = true;
-        state_.line = "goto " + name + " ";
-        return;
-      case 'm':
-        if (view) stick_.set_limits(view->max_speed, view->max_turn);
-        drive_ = client_.teleop(name);
-        state_.driving = true;
-        return say("", false);
-      default:
-        return;
+    if (key == 'g') {
+      state_.typing = true;
+      state_.line = "goto " + name + " ";
+    } else if (key == 'm') {
+      if (view) stick_.set_limits(view->max_speed, view->max_turn);
+      drive_ = client_.teleop(name);
+      state_.driving = true;
+      say("", false);
     }
+    struct Order {
+      int key{};
+      const char *verb{}, *after{};
+    };
+    for (const Order& order :
+         {Order{'t', "take ", ""}, Order{'r', "release ", ""},
+          Order{'l', view && view->locked ? "unlock " : "lock ", ""}, Order{'s', "stop ", ""},
+          Order{'e', "reset ", ""}, Order{'E', "reset ", " --override"}, Order{'h', "mode ", " hold"},
+          Order{'w', "mode ", " waypoint"}})
+      if (order.key == key) execute(order.verb + name + order.after);
   }
 
   void type(int key) {
