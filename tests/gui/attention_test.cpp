@@ -25,11 +25,11 @@ class AttentionTest : public testing::Test {
   }
   station::Robot& r(int number) { return world_.robots[static_cast<std::size_t>(number) - 1]; }
   void say(const std::string& robot, const std::string& code, const std::string& text) {
-    attention_.add({.robot = robot, .code = code, .text = text, .mine = true}, world_, now_);
+    queue_.add({.robot = robot, .code = code, .text = text, .mine = true}, world_, now_);
   }
   std::vector<Need> needs() {
-    attention_.update(world_, now_);
-    return attention_.needs(world_, trails_, now_, 0.0);
+    queue_.update(world_, now_);
+    return needs_of(queue_, world_, trails_, now_, 0.0);
   }
   std::vector<std::string> lines() {
     std::vector<std::string> out;
@@ -44,7 +44,7 @@ class AttentionTest : public testing::Test {
 
   station::World world_{};
   Trails trails_{};
-  Attention attention_{};
+  station::AlertQueue queue_{};
   double now_{100.0};
 };
 
@@ -73,7 +73,7 @@ TEST_F(AttentionTest, ARobotOfWhichNoNotificationWasHeardIsFoundByItsState) {
 TEST_F(AttentionTest, WhatWasPutOffDoesNotComeBackByTheState) {
   block(2);
   say("r2", "blocked", "every path is blocked");
-  attention_.later(needs()[0].alert, now_);
+  queue_.later(needs()[0].alert, now_);
   EXPECT_THAT(lines(), IsEmpty());
   now_ += station::AlertQueue::kLater + 1;
   EXPECT_EQ(lines().size(), 1U);
@@ -103,7 +103,7 @@ TEST_F(AttentionTest, AStopByAnotherIsUrgentUntilSeenAndStaysUntilReset) {
   say("r1", "stopped", "op2 stopped r1");
   EXPECT_TRUE(needs()[0].urgent);
   EXPECT_TRUE(needs()[0].can_see);
-  attention_.see(needs()[0].alert);
+  queue_.see(needs()[0].alert);
   EXPECT_FALSE(needs()[0].urgent);
   EXPECT_THAT(lines(), ElementsAre("r1: op2 stopped r1"));
   r(1).stopped = false;

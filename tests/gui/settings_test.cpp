@@ -69,7 +69,7 @@ TEST_F(SettingsTest, AWrongFileIsNamedInTheLogAndPreserved) {
   EXPECT_TRUE(Theme::instance().light());
   EXPECT_TRUE(log().contains("line 2: unknown setting 'scael', did you mean scale?")) << log().toStdString();
   EXPECT_TRUE(content(file()).contains("scael")) << "reading changes nothing";
-  control.tabs()->settings()->set_glove(true);
+  Theme::instance().set_glove(true);
   EXPECT_TRUE(content(file() + ".bad").contains("scael"));
   EXPECT_TRUE(content(file()).contains("theme: light"));
 }
@@ -82,7 +82,7 @@ TEST_F(SettingsTest, ButtonsOfTheControllerAreReadAndSurviveAChange) {
   EXPECT_EQ(log(), "");
   EXPECT_EQ(name_of(settings.pad().of(PadAction::dead_man)), "righttrigger");
   EXPECT_EQ(name_of(settings.pad().of(PadAction::forward)), "-lefty");
-  settings.set_glove(true);
+  Theme::instance().set_glove(true);
   EXPECT_EQ(read_settings(content(file()).toStdString()).pad, settings.pad());
 }
 
@@ -106,7 +106,7 @@ TEST(SettingsFile, WrongButtonsOfTheControllerAreNamedWithTheirLines) {
 
 TEST_F(SettingsTest, AFileThatCannotBeWrittenIsSaid) {
   control.tabs()->settings()->open("/proc/no/such/gui.yaml");
-  control.tabs()->settings()->set_light(true);
+  Theme::instance().set_light(true);
   EXPECT_TRUE(Theme::instance().light());
   EXPECT_TRUE(log().contains("settings are not stored"));
 }

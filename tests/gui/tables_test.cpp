@@ -38,8 +38,8 @@ TEST(Tables, AMatrixHasAPlaceForEachComponentOfAnyRobot) {
     EXPECT_FALSE(health_detail(report, world, "r1", part).mine) << part << " cannot be restarted";
     EXPECT_THAT(health_detail(report, world, "r1", part).text, HasSubstr("no command restarts it"));
   }
-  EXPECT_FALSE(health_detail(report, world, "r2", "planner").known);
-  EXPECT_FALSE(health_detail(report, world, "r9", "map").known);
+  EXPECT_EQ(health_detail(report, world, "r2", "planner").title, "");
+  EXPECT_EQ(health_detail(report, world, "r9", "map").title, "");
 }
 
 TEST(Tables, NumbersThatAreNoneHaveNoBar) {

@@ -9,7 +9,7 @@
 
 namespace adit::gui {
 
-/// What a button needs of the operator.
+/// The touch that a button needs.
 enum class Touch : std::uint8_t {
   tap,
   hold,        ///< Press and hold: it takes something from someone, or concerns many robots.
@@ -41,6 +41,7 @@ inline constexpr std::array kSlots{
     Slot{"reset", "e", "reset", "", "Reset", false},
 };
 
+/// A button of the action bar in its present state.
 struct BarButton {
   std::string id{}, label{}, key{};
   std::string hint{};                 ///< "2/3", or "from op2".
@@ -53,7 +54,7 @@ struct BarButton {
 
 /// Why actions are not possible now for some robots, and what would change that.
 struct Refusal {
-  std::string id{}, label{};
+  std::string label{};
   std::string robots{};      ///< "r1, r3".
   std::string why{};         ///< In words.
   std::string cure_label{};  ///< Empty: there is none.

@@ -72,7 +72,7 @@ std::vector<Point> AreaTool::sketch() const {
 
 QString AreaTool::text() const {
   QStringList names;
-  for (const std::string& name : robots()) names << QString::fromStdString(name);
+  for (const std::string& name : robots()) names << text_of(name);
   return QString("%1 x %2 m for %3")
       .arg(std::abs(to_.x - from_.x), 0, 'f', 1)
       .arg(std::abs(to_.y - from_.y), 0, 'f', 1)

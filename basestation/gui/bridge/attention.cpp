@@ -2,20 +2,17 @@
 #include "basestation/gui/bridge/attention.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/model/numbering.hpp"
+#include "basestation/model/text.hpp"
 #include "core/command/words.hpp"
 
 namespace adit::gui {
 namespace {
 
 using station::Alert;
-
-std::string words_of_code(std::string code) {
-  std::ranges::replace(code, '_', ' ');
-  return code;
-}
 
 /// What happened, in a few words. Of a stop: who set it.
 std::string what_of(const Alert& alert, const station::World& world) {
@@ -25,7 +22,7 @@ std::string what_of(const Alert& alert, const station::World& world) {
       if (std::ranges::count(alert.robots, robot.name) > 0)
         for (const std::string& stopper : robot.stops)
           if (std::ranges::count(stoppers, stopper) == 0) stoppers.push_back(stopper);
-  return stoppers.empty() ? words_of_code(alert.code) : "stopped by " + command::joined(stoppers, "");
+  return stoppers.empty() ? station::code_text(alert.code) : "stopped by " + command::joined(stoppers, "");
 }
 
 /// The text of the notification names the operator who asked: "op2 asked for r3".
@@ -39,16 +36,16 @@ void offer_grant(Need& need, const Alert& alert, const station::World& world) {
     }
 }
 
+using Numbers = std::map<std::string, int>;
+
 /// The robots without their names: "robot 7", "4 robots".
-std::string short_who(const std::vector<std::string>& robots, const station::World& world) {
+std::string short_who(const std::vector<std::string>& robots, const Numbers& numbers) {
   if (robots.size() != 1) return robots.empty() ? "station" : std::to_string(robots.size()) + " robots";
-  const std::vector<int> numbers = station::numbers_of(world);
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (world.robots[i].name == robots.front()) return "robot " + std::to_string(numbers[i]);
-  return "a robot";
+  const auto found = numbers.find(robots.front());
+  return found == numbers.end() ? "a robot" : "robot " + std::to_string(found->second);
 }
 
-Need need_of(const Alert& alert, const station::World& world, double now) {
+Need need_of(const Alert& alert, const station::World& world, const Numbers& numbers, double now) {
   const station::AlertRow* row = station::alert_row(alert.code);
   const bool act = alert.priority == station::Priority::act;
   constexpr std::size_t kShort = 45;  // Characters that have room at the top of the window.
@@ -57,9 +54,9 @@ Need need_of(const Alert& alert, const station::World& world, double now) {
   Need need{.id = "alert " + std::to_string(alert.id),
             .robots = alert.robots,
             .who = alert.robots.empty() ? "station" : command::joined(alert.robots, ""),
-            .short_who = short_who(alert.robots, world),
-            .text = alert.text.empty() ? words_of_code(alert.code) : alert.text,
-            .short_text = what.size() <= kShort ? what : words_of_code(alert.code),
+            .short_who = short_who(alert.robots, numbers),
+            .text = alert.text.empty() ? station::code_text(alert.code) : alert.text,
+            .short_text = what.size() <= kShort ? what : station::code_text(alert.code),
             .since = age_text(now - alert.first),
             .urgent = act && !alert.seen,
             .can_see = !alert.seen && (act || ends_when_seen),
@@ -82,18 +79,21 @@ bool stopped_here(const station::Robot& robot, const station::World& world) {
 
 }  // namespace
 
-std::vector<Need> Attention::needs(const station::World& world, const Trails& trails, double now,
-                                   double silent) const {
+std::vector<Need> needs_of(const station::AlertQueue& queue, const station::World& world,
+                           const Trails& trails, double now, double silent) {
+  Numbers numbers;
+  const std::vector<int> in_order = station::numbers_of(world);
+  for (std::size_t i = 0; i < in_order.size(); ++i) numbers[world.robots[i].name] = in_order[i];
   std::vector<Need> needs;
-  for (const Alert& alert : queue_.shown(now)) needs.push_back(need_of(alert, world, now));
+  for (const Alert& alert : queue.shown(now)) needs.push_back(need_of(alert, world, numbers, now));
   for (const station::Robot& robot : world.robots) {
     const Card card = card_of(robot, 0, silent, trails.stale_after(robot.name));
-    if (!robot.mine || !card.needs_operator || queue_.concerns(robot.name)) continue;
+    if (!robot.mine || !card.needs_operator || queue.concerns(robot.name)) continue;
     if (card.contact != Contact::lost && stopped_here(robot, world)) continue;
     needs.push_back({.id = "state " + robot.name,
                      .robots = {robot.name},
                      .who = robot.name,
-                     .short_who = short_who({robot.name}, world),
+                     .short_who = short_who({robot.name}, numbers),
                      .text = card.headline + ": " + card.detail,
                      .short_text = card.short_headline + ": " + card.short_detail});
   }

@@ -26,22 +26,9 @@ struct Need {
 };
 
 /// What needs this operator: the alerts of the queue, and the operator's robots whose state says that they do
-/// nothing useful although no notification of it was heard, e.g. because the window was opened later.
-class Attention {
- public:
-  /// Returns its priority.
-  station::Priority add(const station::Notice& notice, const station::World& world, double now) {
-    return queue_.add(notice, world, now);
-  }
-  void update(const station::World& world, double now) { queue_.update(world, now); }
-  void see(std::uint64_t alert) { queue_.see(alert); }
-  void later(std::uint64_t alert, double now) { queue_.later(alert, now); }
-
-  /// The most urgent and then the oldest first. `silent`: time since the station's last snapshot, s.
-  std::vector<Need> needs(const station::World& world, const Trails& trails, double now, double silent) const;
-
- private:
-  station::AlertQueue queue_{};
-};
+/// nothing useful although no notification of it was heard, e.g. because the window was opened later. The
+/// most urgent and then the oldest first. `silent`: time since the station's last snapshot, s.
+std::vector<Need> needs_of(const station::AlertQueue& queue, const station::World& world,
+                           const Trails& trails, double now, double silent);
 
 }  // namespace adit::gui

@@ -19,13 +19,13 @@ AttentionList::AttentionList(Control& control)
     : QObject(&control), control_(control), rows_(roles(), this), top_(roles(), this) {}
 
 station::Priority AttentionList::add(const station::Notice& notice) {
-  return attention_.add(notice, control_.world(), control_.now());
+  return queue_.add(notice, control_.world(), control_.now());
 }
 
 void AttentionList::refresh() {
-  attention_.update(control_.world(), control_.now());
+  queue_.update(control_.world(), control_.now());
   const bool was_open = is_open();
-  needs_ = attention_.needs(control_.world(), control_.trails(), control_.now(), control_.silent_for());
+  needs_ = needs_of(queue_, control_.world(), control_.trails(), control_.now(), control_.silent_for());
   std::vector<QVariantList> rows;
   for (const Need& need : needs_) {
     rows.push_back({text_of(need.id), need.urgent, text_of(need.who), text_of(need.short_who),
@@ -54,14 +54,14 @@ void AttentionList::show(const QString& id) {
 void AttentionList::see(const QString& id) {
   const Need* need = find(id);
   if (!need) return;
-  attention_.see(need->alert);
+  queue_.see(need->alert);
   refresh();
 }
 
 void AttentionList::later(const QString& id) {
   const Need* need = find(id);
   if (!need) return;
-  attention_.later(need->alert, control_.now());
+  queue_.later(need->alert, control_.now());
   refresh();
 }
 
@@ -84,9 +84,7 @@ QString AttentionList::quiet() const {
 }
 
 void AttentionList::set_open(bool open) {
-  if (open == open_) return;
-  open_ = open;
-  emit open_changed();
+  if (assign(open_, open)) emit open_changed();
 }
 
 }  // namespace adit::gui

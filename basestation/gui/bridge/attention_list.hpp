@@ -11,7 +11,7 @@ namespace adit::gui {
 
 class Control;
 
-/// What needs the operator, for QML: rows, and what a tap on one does.
+/// The list of what needs the operator, for QML: its rows, and the actions of each.
 class AttentionList : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -60,7 +60,7 @@ class AttentionList : public QObject {
   const Need* find(const QString& id) const;
 
   Control& control_;
-  Attention attention_{};
+  station::AlertQueue queue_{};
   std::vector<Need> needs_{};
   RowModel rows_, top_;
   QString last_shown_{};

@@ -15,17 +15,11 @@ namespace {
 using station::GoalState;
 using station::Robot;
 
-std::string upper(std::string text) {
-  for (char& c : text) {
+std::string upper(const std::string& code) {
+  std::string text = station::code_text(code);
+  for (char& c : text)
     if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    if (c == '_') c = ' ';
-  }
   return text;
-}
-
-std::string spaced(std::string code) {
-  std::ranges::replace(code, '_', ' ');
-  return code;
 }
 
 std::string glyph_of(const std::string& platform) {
@@ -79,7 +73,7 @@ Words detail(const Card& card, const Robot& robot, double age) {
             robot.troubles.size() == 1 ? "one component in trouble"
                                        : std::to_string(robot.troubles.size()) + " components in trouble"};
   if (const std::string why = station::standstill_text(robot); !why.empty())
-    return {why, spaced(std::string(name(robot.reason)))};
+    return {why, station::code_text(std::string(name(robot.reason)))};
   if (!robot.yields_to.empty()) return {"makes way for " + robot.yields_to, "makes way for a robot"};
   if (!robot.described) return {"capabilities not heard yet"};
   if (robot.localisation == Localisation::weak) return {"position is weak"};

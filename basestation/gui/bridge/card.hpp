@@ -9,7 +9,7 @@
 
 namespace adit::gui {
 
-/// What a robot's card shows, as texts.
+/// The texts of a robot's card.
 struct Card {
   int number{};  ///< As station::numbers_of(); the keys 1 to 9 select by it.
   std::string name{};

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "basestation/gui/bridge/control.hpp"
-#include "basestation/gui/bridge/typed_line.hpp"
 #include "basestation/model/outcome.hpp"
 
 namespace adit::gui {
@@ -12,8 +11,7 @@ namespace adit::gui {
 CommandLine::CommandLine(Control& control) : QObject(&control), control_(control) {}
 
 void CommandLine::set_open(bool open) {
-  if (open == open_) return;
-  open_ = open;
+  if (!assign(open_, open)) return;
   if (open_) {
     show_answer({}, false);
     set_line({});
@@ -21,24 +19,24 @@ void CommandLine::set_open(bool open) {
   emit open_changed();
 }
 
+std::vector<std::string> CommandLine::robots() const {
+  std::vector<std::string> names;
+  for (const station::Robot& robot : control_.world().robots) names.push_back(robot.name);
+  return names;
+}
+
 void CommandLine::set_line(const QString& line) {
   line_ = line;
-  std::vector<std::string> robots;
-  for (const station::Robot& robot : control_.world().robots) robots.push_back(robot.name);
+  typed_ = read_line(line.trimmed().toStdString());
   proposals_.clear();
-  for (const std::string& word : gui::proposals(line.toStdString(), robots))
-    proposals_ << QString::fromStdString(word);
+  for (const std::string& word : gui::proposals(line.toStdString(), robots())) proposals_ << text_of(word);
   emit line_changed();
 }
 
-void CommandLine::complete() {
-  std::vector<std::string> robots;
-  for (const station::Robot& robot : control_.world().robots) robots.push_back(robot.name);
-  set_line(QString::fromStdString(completed(line_.toStdString(), robots)));
-}
+void CommandLine::complete() { set_line(text_of(completed(line_.toStdString(), robots()))); }
 
 void CommandLine::take(const QString& word) {
-  set_line(QString::fromStdString(with_word(line_.toStdString(), word.toStdString())));
+  set_line(text_of(with_word(line_.toStdString(), word.toStdString())));
 }
 
 void CommandLine::recall(int by) {
@@ -53,18 +51,16 @@ void CommandLine::show_answer(const QString& text, bool refused) {
   emit answered();
 }
 
-bool CommandLine::is_held() const {
-  return line_is_held(line_.toStdString(), control_.world().robots.size());
-}
+bool CommandLine::is_held() const { return typed_.is_held(control_.world().robots.size()); }
 
 void CommandLine::run(bool held) {
   if (is_held() && !held) return show_answer("press and hold: it commands more than three robots", false);
   const std::string line = line_.trimmed().toStdString();
-  const TypedLine typed = read_line(line);
+  const TypedLine typed = typed_;
   const int order = ++orders_;
   if (typed.kind == TypedLine::Kind::nothing) return;
   if (typed.kind == TypedLine::Kind::wrong || typed.kind == TypedLine::Kind::help)
-    return show_answer(QString::fromStdString(typed.text), typed.kind == TypedLine::Kind::wrong);
+    return show_answer(text_of(typed.text), typed.kind == TypedLine::Kind::wrong);
   if (history_.isEmpty() || history_.back() != line_.trimmed()) history_ << line_.trimmed();
   while (history_.size() > kMaxHistory) history_.removeFirst();
   at_ = static_cast<int>(history_.size());
@@ -77,8 +73,7 @@ void CommandLine::run(bool held) {
   show_answer("…", false);
   control_.order(line, {}, [this, order](const station::CommandOutcome& outcome) {
     if (order == orders_)
-      show_answer(QString::fromStdString(outcome.text + outcome.error).trimmed(),
-                  outcome.exit_code != station::kExitDone);
+      show_answer(text_of(outcome.text + outcome.error).trimmed(), outcome.exit_code != station::kExitDone);
   });
 }
 

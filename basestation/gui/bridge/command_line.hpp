@@ -4,6 +4,8 @@
 #include <QObject>
 #include <QStringList>
 
+#include "basestation/gui/bridge/typed_line.hpp"
+
 namespace adit::gui {
 
 class Control;
@@ -51,11 +53,13 @@ class CommandLine : public QObject {
   void answered();
 
  private:
+  std::vector<std::string> robots() const;
   void show_answer(const QString& text, bool refused);
 
   Control& control_;
   bool open_{false}, refused_{false};
   QString line_{}, answer_{};
+  TypedLine typed_{};  ///< What the line means.
   QStringList proposals_{}, history_{};
   int at_{0};      ///< Of the history; its size: the line that is being typed.
   int orders_{0};  ///< An answer to an earlier line is not shown.

@@ -9,8 +9,8 @@
 
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/gui/scene/mark_list.hpp"
-#include "basestation/model/outcome.hpp"
 #include "basestation/model/numbering.hpp"
+#include "basestation/model/outcome.hpp"
 
 namespace adit::gui {
 namespace {
@@ -203,22 +203,17 @@ int Control::refusal_count() const {
 }
 
 void Control::set_aiming(bool aiming) {
-  if (aiming == aiming_) return;
-  aiming_ = aiming;
-  emit aiming_changed();
+  if (assign(aiming_, aiming)) emit aiming_changed();
 }
 
 void Control::set_solid(bool solid) {
-  if (solid == solid_) return;
+  if (!assign(solid_, solid)) return;
   drop_orders();
-  solid_ = solid;
   emit solid_changed();
 }
 
 void Control::set_reasons_open(bool open) {
-  if (open == reasons_open_) return;
-  reasons_open_ = open;
-  emit reasons_open_changed();
+  if (assign(reasons_open_, open)) emit reasons_open_changed();
 }
 
 void Control::say(const QString& text, const QString& kind, const QString& brief) {

@@ -45,7 +45,6 @@ class Control : public QObject {
   Q_PROPERTY(int robotCount READ robot_count NOTIFY shown)
   Q_PROPERTY(int mineCount READ mine_count NOTIFY shown)
   Q_PROPERTY(int lostCount READ lost_count NOTIFY shown)
-  Q_PROPERTY(int stoppedCount READ stopped_count NOTIFY shown)
   Q_PROPERTY(QString others READ others NOTIFY shown)
   Q_PROPERTY(adit::gui::AreaTool* area READ area CONSTANT)
   Q_PROPERTY(adit::gui::AttentionList* attention READ attention CONSTANT)
@@ -143,12 +142,11 @@ class Control : public QObject {
   QAbstractItemModel* refusals() { return &refusals_; }
   QAbstractItemModel* log() { return &log_; }
   TabState* tabs() { return &tabs_; }
-  QString operator_name() const { return QString::fromStdString(world_->station); }
-  QString link() const { return QString::fromStdString(world_->link); }
+  QString operator_name() const { return text_of(world_->station); }
+  QString link() const { return text_of(world_->link); }
   int robot_count() const { return static_cast<int>(world_->robots.size()); }
   int mine_count() const { return mine_; }
   int lost_count() const { return lost_; }
-  int stopped_count() const { return stopped_; }
   QString others() const;
   AreaTool* area() { return &area_; }
   AttentionList* attention() { return &attention_; }

@@ -9,8 +9,8 @@
 #include "basestation/gui/bridge/control.hpp"
 #include "basestation/gui/scene/mark_list.hpp"
 #include "basestation/gui/scene/theme.hpp"
-#include "basestation/model/outcome.hpp"
 #include "basestation/model/numbering.hpp"
+#include "basestation/model/outcome.hpp"
 #include "basestation/model/text.hpp"
 
 namespace adit::gui {
@@ -52,7 +52,7 @@ void Control::select(const QString& name, bool add) {
 
 void Control::tap(const Target& target, bool add) {
   if (target.finding != 0) return tabs_.show_finding(static_cast<int>(target.finding));
-  select(QString::fromStdString(target.robot), add);
+  select(text_of(target.robot), add);
 }
 
 void Control::select_and_show(const std::vector<std::string>& robots) {
@@ -88,8 +88,8 @@ void Control::take_selected(bool held) {
   const bool needs_hold = button.touch == Touch::hold && !button.robots.empty();
   if (held == needs_hold) return trigger(static_cast<int>(slot), held);
   if (needs_hold)
-    say(QString::fromStdString(button.label + " " + button.hint) + ": keep the button held", "sent",
-        QString::fromStdString(button.label + " " + button.short_hint) + ": keep the button held");
+    say(text_of(button.label + " " + button.hint) + ": keep the button held", "sent",
+        text_of(button.label + " " + button.short_hint) + ": keep the button held");
 }
 
 void Control::begin_batch() {
@@ -106,8 +106,7 @@ void Control::drop_orders() {
 
 void Control::run(const std::string& line, const std::string& slot, CommandSink::Done then) {
   const int batch = batch_;
-  say(QString::fromStdString(line) + "  …", "sent",
-      QString::fromStdString(line.substr(0, line.find(' '))) + "  …");
+  say(text_of(line) + "  …", "sent", text_of(line.substr(0, line.find(' '))) + "  …");
   set_state(slot, "sent");
   sink_.execute(line,
                 [this, line, slot, batch, then = std::move(then)](const station::CommandOutcome& outcome) {
@@ -128,13 +127,13 @@ void Control::stop(const std::vector<std::string>& robots) {
   std::string line = "stop";
   if (robots.empty()) line += " all";
   for (const std::string& robot : robots) line += " " + robot;
-  say(QString::fromStdString(line) + "  …", "sent", "stop  …");
+  say(text_of(line) + "  …", "sent", "stop  …");
   set_state(robots.empty() ? "" : "stop", "sent");
   sink_.stop(robots, [this, line, robots, batch](const station::CommandOutcome& outcome) {
     if (robots.empty()) {
       stop_missing_.clear();
       for (const station::RobotAnswer& answer : outcome.answers)
-        if (!answer.accepted) stop_missing_ << QString::fromStdString(answer.robot);
+        if (!answer.accepted) stop_missing_ << text_of(answer.robot);
     }
     finished(line, robots.empty() ? "" : "stop", batch, outcome);
   });
@@ -153,12 +152,14 @@ void Control::finished(const std::string& line, const std::string& slot, int bat
     return;
   }
   const QString answer = one_line(outcome.text + outcome.error);
-  batch_lines_ << (answer.isEmpty() ? QString::fromStdString(line) : answer);
+  batch_lines_ << (answer.isEmpty() ? text_of(line) : answer);
   batch_refused_ = batch_refused_ || !done;
-  say((batch_refused_ ? "" : "✓ ") + batch_lines_.join(" · "), batch_refused_ ? "refused" : "done",
-      QString::fromStdString(line.substr(0, line.find(' '))) +
-          (batch_refused_ ? ": refused or without an answer, the log says by whom"
-                          : ": done, the log has the answers"));
+  const QString first_word = text_of(line.substr(0, line.find(' ')));
+  if (batch_refused_)
+    say(batch_lines_.join(" · "), "refused",
+        first_word + ": refused or without an answer, the log says by whom");
+  else
+    say("✓ " + batch_lines_.join(" · "), "done", first_word + ": done, the log has the answers");
   emit shown();
 }
 
@@ -175,16 +176,15 @@ void Control::trigger(int slot, bool held) {
   if (slot < 0 || slot >= static_cast<int>(bar_.buttons.size())) return;
   const BarButton button = bar_.buttons[static_cast<std::size_t>(slot)];
   pending_line_.clear();
-  if (button.robots.empty())
-    return say(QString::fromStdString(button.label) + ": " + reason_of(button), "refused");
+  if (button.robots.empty()) return say(text_of(button.label) + ": " + reason_of(button), "refused");
   if (button.touch == Touch::place || button.touch == Touch::place_held) {
     set_aiming(!aiming_);
     if (aiming_) ask_for_place(button);
     return;
   }
   if (button.touch == Touch::hold && !held)
-    return say(QString::fromStdString(button.label + " " + button.hint) + ": press and hold", "sent",
-               QString::fromStdString(button.label + " " + button.short_hint) + ": press and hold");
+    return say(text_of(button.label + " " + button.hint) + ": press and hold", "sent",
+               text_of(button.label + " " + button.short_hint) + ": press and hold");
   if (button.id == "stop") return stop(button.robots);
   if (button.id == "drive") return drive_.begin(button.robots.front());
   order(button.line, button.id);
@@ -221,7 +221,7 @@ bool Control::goto_is_held() const { return bar_.buttons[slot_index("goto")].tou
 void Control::ask_for_place(const BarButton& button) {
   const QString how =
       goto_is_held() ? "Press and hold the place on the map for " : "Tap the place on the map for ";
-  say(how + QString::fromStdString(words_of(button.robots)) + "; Esc takes it back.", "sent",
+  say(how + text_of(words_of(button.robots)) + "; Esc takes it back.", "sent",
       how + QString::number(button.robots.size()) + " robots; Esc takes it back.");
 }
 
@@ -244,8 +244,7 @@ void Control::pend(const BarButton& button) {
   pending_slot_ = button.id;
   pending_since_.start();
   const QString asks = "Press Enter within 3 s: ";
-  say(asks + QString::fromStdString(button.line), "sent",
-      asks + QString::fromStdString(button.label + " " + button.short_hint));
+  say(asks + text_of(button.line), "sent", asks + text_of(button.label + " " + button.short_hint));
 }
 
 void Control::press_slot(const char* id) {
@@ -262,7 +261,7 @@ void Control::move_selection(int by) {
   for (int i = 0; i < count; ++i)
     if (!selection_.empty() && world_->robots[static_cast<std::size_t>(i)].name == selection_.back()) at = i;
   at = std::clamp(at + by, 0, count - 1);
-  select(QString::fromStdString(world_->robots[static_cast<std::size_t>(at)].name), false);
+  select(text_of(world_->robots[static_cast<std::size_t>(at)].name), false);
 }
 
 /// What a key does that is pressed. The first row that fits counts.
@@ -322,7 +321,7 @@ void Control::confirm() {
   const bool in_time = !pending_line_.empty() && pending_since_.elapsed() <= kConfirmMs;
   const std::string line = std::exchange(pending_line_, {});
   if (!in_time) return;
-  if (silent()) return say("Not sent, as the station is silent: " + QString::fromStdString(line), "refused");
+  if (silent()) return say("Not sent, as the station is silent: " + text_of(line), "refused");
   order(line, pending_slot_);
 }
 
@@ -358,7 +357,7 @@ bool Control::press_digit(int key, int scan, bool add) {
                                                                      : 0;
   if (digit == 0) return false;
   if (const station::Robot* robot = station::robot_with_number(*world_, digit))
-    select(QString::fromStdString(robot->name), add);
+    select(text_of(robot->name), add);
   return true;
 }
 

@@ -16,9 +16,9 @@ void DetailList::refresh() {
   std::vector<QVariantList> rows;
   for (const Detail& detail : details_) {
     const bool offered = !detail.action.line.empty() && !control_.silent();
-    rows.push_back({QString::fromStdString(detail.label), Control::one_line(detail.value), detail.differs,
-                    offered ? QString::fromStdString(detail.action.label) : QString(),
-                    QString::fromStdString(detail.action.line), detail.action.hold});
+    rows.push_back({text_of(detail.label), Control::one_line(detail.value), detail.differs,
+                    offered ? text_of(detail.action.label) : QString(), text_of(detail.action.line),
+                    detail.action.hold});
   }
   rows_.show(std::move(rows));
 }
@@ -31,8 +31,7 @@ void DetailList::act(int row, bool held) {
 }
 
 void DetailList::set_open(bool open) {
-  if (open == open_) return;
-  open_ = open;
+  if (!assign(open_, open)) return;
   refresh();
   emit open_changed();
 }

@@ -13,9 +13,8 @@ namespace adit::gui {
 namespace {
 
 QString speed_text(double forward, double sideways, double turn) {
-  return QString::fromStdString(
-      station::fixed(forward, 2) + " m/s, " + station::fixed(turn, 2) + " rad/s" +
-      (sideways == 0.0 ? "" : ", sideways " + station::fixed(sideways, 2) + " m/s"));
+  return text_of(station::fixed(forward, 2) + " m/s, " + station::fixed(turn, 2) + " rad/s" +
+                 (sideways == 0.0 ? "" : ", sideways " + station::fixed(sideways, 2) + " m/s"));
 }
 
 }  // namespace
@@ -41,7 +40,7 @@ void DriveControl::begin(const std::string& robot) {
   down_.clear();
   thread_->beat();
   thread_->drive(robot);
-  control_.say("Driving " + QString::fromStdString(robot) + "; Esc lets go.", "sent");
+  control_.say("Driving " + text_of(robot) + "; Esc lets go.", "sent");
   look();
 }
 
@@ -65,35 +64,23 @@ void DriveControl::setMode(const QString& mode) {
 }
 
 bool DriveControl::press(int key, int place) {
+  constexpr std::array<int, 10> kDriving{Qt::Key_Up, Qt::Key_Down, Qt::Key_Left, Qt::Key_Right, Qt::Key_W,
+                                         Qt::Key_A,  Qt::Key_S,    Qt::Key_D,    Qt::Key_Q,     Qt::Key_E};
+  const bool drives = std::ranges::find(kDriving, key) != kDriving.end();
   if (!driving()) return false;
-  switch (key) {
-    case Qt::Key_Escape:
-    case Qt::Key_B:
-      letGo();
-      return true;
-    case Qt::Key_X:
-      control_.stop({status_.robot});
-      return true;
-    case Qt::Key_Space:
-      down_.clear();
-      send_keys();
-      return true;
-    case Qt::Key_Up:
-    case Qt::Key_Down:
-    case Qt::Key_Left:
-    case Qt::Key_Right:
-    case Qt::Key_W:
-    case Qt::Key_A:
-    case Qt::Key_S:
-    case Qt::Key_D:
-    case Qt::Key_Q:
-    case Qt::Key_E:
-      down_[place] = key;
-      send_keys();
-      return true;
-    default:
-      return false;
+  if (key == Qt::Key_Escape || key == Qt::Key_B) {
+    letGo();
+  } else if (key == Qt::Key_X) {
+    control_.stop({status_.robot});
+  } else if (drives) {
+    down_[place] = key;
+    send_keys();
+  } else if (key == Qt::Key_Space) {
+    forget_keys();
+  } else {
+    return false;
   }
+  return true;
 }
 
 void DriveControl::release_key(int place) {
@@ -132,9 +119,8 @@ void DriveControl::look() {
   const InputThread::Status before = std::exchange(status_, thread_->status());
   if (before.robot != status_.robot) down_.clear();
   if (!before.robot.empty() && status_.robot.empty() && !status_.ended.empty())
-    control_.say(
-        "Driving " + QString::fromStdString(before.robot) + " ended: " + Control::one_line(status_.ended),
-        "refused");
+    control_.say("Driving " + text_of(before.robot) + " ended: " + Control::one_line(status_.ended),
+                 "refused");
   if (status_.starts != before.starts && !driving()) control_.drive_selected();
   if (status_.takes != before.takes) control_.take_selected(false);
   if (status_.takes_held != before.takes_held) control_.take_selected(true);
@@ -149,7 +135,7 @@ void DriveControl::warn_hand(bool strongly) {
 
 QString DriveControl::mode() const {
   const station::Robot* robot = control_.world().robot(status_.robot);
-  return robot ? QString::fromStdString(robot->mode) : QString();
+  return robot ? text_of(robot->mode) : QString();
 }
 
 QString DriveControl::asked() const {
@@ -163,7 +149,7 @@ QString DriveControl::measured() const {
 
 QString DriveControl::age() const {
   const station::Robot* robot = control_.world().robot(status_.robot);
-  return robot ? QString::fromStdString(age_text(robot->age + control_.silent_for())) : QString();
+  return robot ? text_of(age_text(robot->age + control_.silent_for())) : QString();
 }
 
 bool DriveControl::good() const {

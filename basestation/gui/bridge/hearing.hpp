@@ -11,7 +11,7 @@ namespace adit::gui {
 inline constexpr double kSilent = 10.0;  ///< Age of a silent link, s; on a full one reports come every 8 s.
 inline constexpr double kLossy = 0.2;    ///< Share of lost heartbeats from which a link counts as bad.
 
-/// How well one agent hears another.
+/// A cell of the matrix of hearers and speakers: the loss of one link.
 struct HearingCell {
   std::string hearer{};
   std::string speaker{};  ///< Empty: the hearer's name, at the begin of its row.
@@ -21,7 +21,8 @@ struct HearingCell {
   bool operator==(const HearingCell&) const = default;
 };
 
-/// Who hears whom, as far as the station knows: itself from heartbeats, others from their reports.
+/// The matrix of hearers and speakers, as far as the station knows: itself from heartbeats, others from their
+/// reports.
 struct HearingTable {
   std::vector<std::string> speakers{};  ///< Columns.
   std::vector<HearingCell> cells{};     ///< Row by row, each one with a cell for the hearer's name before it.

@@ -54,36 +54,27 @@ void LogView::show() {
 }
 
 void LogView::set_text(const QString& text) {
-  if (text == text_) return;
-  text_ = text;
-  show();
+  if (assign(text_, text)) show();
 }
 
 void LogView::set_warnings(bool only) {
-  if (only == warnings_) return;
-  warnings_ = only;
-  show();
+  if (assign(warnings_, only)) show();
 }
 
 void LogView::set_selected(bool only) {
-  if (only == selected_) return;
-  selected_ = only;
-  show();
+  if (assign(selected_, only)) show();
 }
 
 void LogView::set_paused(bool paused) {
-  if (paused == paused_) return;
-  paused_ = paused;
+  if (!assign(paused_, paused)) return;
   if (!paused && waiting_ > 0) return show();
   emit changed();
 }
 
 void LogView::set_selection(const std::vector<std::string>& selection) {
   QStringList names;
-  for (const std::string& name : selection) names << QString::fromStdString(name);
-  if (names == selection_) return;
-  selection_ = names;
-  if (selected_) show();
+  for (const std::string& name : selection) names << text_of(name);
+  if (assign(selection_, names) && selected_) show();
 }
 
 QString LogView::as_text() const {

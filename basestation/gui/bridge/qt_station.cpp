@@ -36,7 +36,7 @@ void QtStation::show_in(Control& control) {
   timer_.start(kLookMs);
   take();
   show_world();
-  if (!station_->remark().empty()) control.add_remark(QString::fromStdString(station_->remark()));
+  if (!station_->remark().empty()) control.add_remark(text_of(station_->remark()));
 }
 
 void QtStation::take() {
@@ -62,32 +62,10 @@ void QtStation::look() {
   control_->show_link(link.connected, link.silent_for, link.why);
 }
 
-void QtStation::execute(const std::string& line, CommandSink::Done done) {
-  station_->execute(line, std::move(done));
-}
-
-void QtStation::stop(const std::vector<std::string>& robots, CommandSink::Done done) {
-  station_->stop(robots, std::move(done));
-}
-
 double QtStation::silent_for() const {
   constexpr double kNoStation = 1e6;
   const station::client::Link link = station_->link();
   return link.connected ? link.silent_for : kNoStation;
-}
-
-std::int64_t QtStation::drive(const std::string& robot, DriveSink::Done done) {
-  return station_->drive(robot, std::move(done));
-}
-
-void QtStation::stick(std::int64_t drive, const station::StickVelocity& velocity) {
-  station_->stick(drive, velocity);
-}
-
-void QtStation::cancel(std::int64_t drive) { station_->cancel(drive); }
-
-void QtStation::halt(const std::vector<std::string>& robots) {
-  station_->stop(robots, [](const station::CommandOutcome&) {});  // Its end is in the log.
 }
 
 void QtStation::start_station() {
@@ -96,7 +74,7 @@ void QtStation::start_station() {
   control_->add_remark("the station is started again");
   starter_ = std::jthread([this] {
     const Result<void> started = station_->start_station();
-    const QString why = started ? QString() : QString::fromStdString(started.error().text);
+    const QString why = started ? QString() : text_of(started.error().text);
     QMetaObject::invokeMethod(this, [this, why] {
       starting_ = false;
       if (!why.isEmpty()) control_->add_remark("the station did not start: " + why);

@@ -26,16 +26,22 @@ class QtStation : public QObject, public CommandSink, public DriveSink {
   /// Shows the station in a window from now on.
   void show_in(Control& control);
 
-  void execute(const std::string& line, CommandSink::Done done) override;
-  void query(const std::string& line, CommandSink::Done done) override { execute(line, std::move(done)); }
-  void stop(const std::vector<std::string>& robots, CommandSink::Done done) override;
+  void execute(const std::string& line, CommandSink::Done done) override { station_->execute(line, done); }
+  void query(const std::string& line, CommandSink::Done done) override { station_->execute(line, done); }
+  void stop(const std::vector<std::string>& robots, CommandSink::Done done) override {
+    station_->stop(robots, done);
+  }
   std::shared_ptr<const station::World> world() const override { return station_->world(); }
   double silent_for() const override;
-  std::int64_t drive(const std::string& robot, DriveSink::Done done) override;
-  void stick(std::int64_t drive, const station::StickVelocity& velocity) override;
-  void cancel(std::int64_t drive) override;
+  std::int64_t drive(const std::string& robot, DriveSink::Done done) override {
+    return station_->drive(robot, done);
+  }
+  void stick(std::int64_t drive, const station::StickVelocity& velocity) override {
+    station_->stick(drive, velocity);
+  }
+  void cancel(std::int64_t drive) override { station_->cancel(drive); }
   void look_at(const std::optional<station::LookedAt>& place) override { station_->look_at(place); }
-  void halt(const std::vector<std::string>& robots) override;
+  void halt(const std::vector<std::string>& robots) override { station_->stop(robots, {}); }
   void start_station() override;
 
  private:

@@ -9,6 +9,14 @@ namespace adit::gui {
 
 inline QString text_of(const std::string& text) { return QString::fromStdString(text); }
 
+/// Sets a member of an item; returns whether its value changed, so that QML is to be notified.
+template <class T>
+bool assign(T& member, const T& value) {
+  if (member == value) return false;
+  member = value;
+  return true;
+}
+
 /// A list of rows for QML. Each row has one value per role, in their order; the first role identifies the
 /// row. Rows that stay keep their items, so that a finger on one of them is not lost.
 class RowModel : public QAbstractListModel {

@@ -50,7 +50,7 @@ void WindowSettings::open(const QString& file, bool light) {
     }
   }
   applying_ = true;
-  if (light) set_light(true);
+  if (light) Theme::instance().set_light(true);
   applying_ = false;
   emit changed();
 }
@@ -81,10 +81,6 @@ void WindowSettings::store() {
   if (!stored) emit remark("settings are not stored: " + file_ + ": " + out.errorString());
 }
 
-bool WindowSettings::light() const { return Theme::instance().light(); }
-void WindowSettings::set_light(bool light) { Theme::instance().set_light(light); }
-bool WindowSettings::glove() const { return Theme::instance().glove(); }
-void WindowSettings::set_glove(bool glove) { Theme::instance().set_glove(glove); }
 double WindowSettings::scale() const { return Theme::instance().scale(); }
 
 void WindowSettings::set_scale(double scale) {

@@ -8,13 +8,11 @@
 
 namespace adit::gui {
 
-/// The operator's settings of the window. Each change acts at once and is stored at once.
+/// The operator's settings of the window: stores those of the Theme in a file at each change.
 class WindowSettings : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("a part of the tabs")
-  Q_PROPERTY(bool light READ light WRITE set_light NOTIFY changed)
-  Q_PROPERTY(bool glove READ glove WRITE set_glove NOTIFY changed)
   Q_PROPERTY(double scale READ scale WRITE set_scale NOTIFY changed)
   Q_PROPERTY(bool isDefault READ is_default NOTIFY changed)
   Q_PROPERTY(QString file READ file NOTIFY changed)
@@ -28,10 +26,6 @@ class WindowSettings : public QObject {
   /// $XDG_CONFIG_HOME/adit/gui.yaml, or ~/.config/adit/gui.yaml.
   static QString default_file();
 
-  bool light() const;
-  void set_light(bool light);
-  bool glove() const;
-  void set_glove(bool glove);
   double scale() const;
   void set_scale(double scale);
   bool is_default() const { return values() == SettingsValues{}; }

@@ -7,7 +7,7 @@
 
 namespace adit::gui {
 
-/// What the operator sets for the window.
+/// The operator's settings of the window.
 struct SettingsValues {
   static constexpr double kMinScale = 0.6, kMaxScale = 2.5;
 

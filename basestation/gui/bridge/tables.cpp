@@ -2,6 +2,7 @@
 #include "basestation/gui/bridge/tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "basestation/gui/bridge/card.hpp"
@@ -20,28 +21,21 @@ std::string count_text(std::uint32_t count, const char* one, const char* many) {
 }
 
 void mark(const ComponentHealth& part, HealthCell& cell) {
-  cell.text = word(part.state);
-  switch (part.state) {
-    case PartState::up:
-      cell.shape = part.healthy ? "disc" : "triangle";
-      cell.token = part.healthy ? Token::ok : Token::warn;
-      if (!part.healthy) cell.text = "up, not well";
-      break;
-    case PartState::starting:
-      cell.shape = "ring";
-      cell.token = Token::text;
-      break;
-    case PartState::waiting:
-      cell.shape = "triangle";
-      cell.token = Token::warn;
-      cell.text = "waits";
-      break;
-    case PartState::failed:
-    case PartState::hung:
-      cell.shape = "square";
-      cell.token = Token::bad;
-      break;
-  }
+  struct Mark {
+    const char *text{}, *shape{};
+    Token token{};
+  };
+  // In the order of PartState.
+  static constexpr std::array kMarks{Mark{"starting", "ring", Token::text}, Mark{"up", "disc", Token::ok},
+                                     Mark{"waits", "triangle", Token::warn},
+                                     Mark{"FAILED", "square", Token::bad},
+                                     Mark{"HUNG", "square", Token::bad}};
+  const bool unwell = part.state == PartState::up && !part.healthy;
+  const Mark shown =
+      unwell ? Mark{"up, not well", "triangle", Token::warn} : kMarks[static_cast<std::size_t>(part.state)];
+  cell.text = shown.text;
+  cell.shape = shown.shape;
+  cell.token = shown.token;
   if (part.restarts > 0) cell.hint = count_text(part.restarts, "restart", "restarts");
   if (part.hung > 0)
     cell.hint += (cell.hint.empty() ? "" : ", ") + count_text(part.hung, "thread", "threads");
@@ -125,7 +119,6 @@ HealthDetail health_detail(const station::HealthReport& report, const station::W
       HealthCell cell;
       mark(part, cell);
       const station::Robot* seen = world.robot(robot);
-      out.known = true;
       const bool held = seen && seen->mine;
       out.mine = held && command::is_component(component);
       out.automatic = part.automatic;

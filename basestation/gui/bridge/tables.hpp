@@ -35,13 +35,12 @@ inline constexpr std::size_t kMaxColumns = 24;
 
 HealthTable health_table(const station::HealthReport& report, const station::World& world);
 
-/// One component in sentences, and what may be done.
+/// One component in sentences, and what may be done; all empty for a component that is not known.
 struct HealthDetail {
   std::string title{};  ///< "r3 planner: FAILED".
   std::string text{};   ///< Why it failed, restarts, threads that it left behind.
   bool mine{};          ///< The operator holds the robot, and a command restarts the component.
   bool automatic{};
-  bool known{};
 };
 HealthDetail health_detail(const station::HealthReport& report, const station::World& world,
                            const std::string& robot, const std::string& component);

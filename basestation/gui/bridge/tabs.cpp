@@ -9,7 +9,6 @@
 
 #include "basestation/client/connection.hpp"
 #include "basestation/client/paths.hpp"
-#include "basestation/gui/bridge/tables.hpp"
 #include "basestation/gui/scene/camera.hpp"
 
 namespace adit::gui {
@@ -120,7 +119,7 @@ void TabState::ask_for(const char* line, Result<Report> (*read)(const station::C
   sink_.query(line, [this, read, &asked, &report, show](const station::CommandOutcome& outcome) {
     asked = false;
     Result<Report> answer = read(outcome);
-    problem_ = answer ? QString() : QString::fromStdString(answer.error().text).trimmed();
+    problem_ = answer ? QString() : text_of(answer.error().text).trimmed();
     if (answer) report = std::move(*answer);
     (this->*show)();
     emit shown();
@@ -147,15 +146,14 @@ void TabState::choose(const QString& robot, const QString& component) {
 }
 
 void TabState::restartChosen() {
-  if (!chosen_mine_) return;
-  emit ordered(
-      QString::fromStdString(station::client::quoted({"restart", chosen_robot_, chosen_component_})));
+  if (!chosen_.mine) return;
+  emit ordered(text_of(station::client::quoted({"restart", chosen_robot_, chosen_component_})));
 }
 
 void TabState::changePolicy() {
-  if (!chosen_mine_) return;
-  emit ordered(QString::fromStdString(station::client::quoted(
-      {"policy", chosen_robot_, chosen_component_, chosen_automatic_ ? "manual" : "auto"})));
+  if (!chosen_.mine) return;
+  emit ordered(text_of(station::client::quoted(
+      {"policy", chosen_robot_, chosen_component_, chosen_.automatic ? "manual" : "auto"})));
 }
 
 void TabState::judge(int finding, const QString& verdict) {
@@ -193,7 +191,7 @@ void TabState::endNote(const QString& text, bool send) {
   const int finding = std::exchange(noting_, 0);
   emit shown();
   if (!send || finding == 0) return;
-  emit ordered(QString::fromStdString(station::client::quoted(
+  emit ordered(text_of(station::client::quoted(
       {"finding", std::to_string(finding), "note", text.simplified().toStdString()})));
 }
 
@@ -208,8 +206,8 @@ void TabState::write(const QString& name, const QByteArray& content) {
   QString folder = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation);
   if (folder.isEmpty() || !QDir(folder).exists()) {
     const auto state = station::client::state_folder();
-    if (!state) return emit said(QString::fromStdString(state.error().text), false);
-    folder = QString::fromStdString(*state);
+    if (!state) return emit said(text_of(state.error().text), false);
+    folder = text_of(*state);
   }
   const QString when = QDateTime::currentDateTime().toString("yyyyMMdd-HHmmss");
   QSaveFile file(folder + "/adit-" + when + "-" + name);

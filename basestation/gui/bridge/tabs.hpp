@@ -12,6 +12,7 @@
 #include "basestation/gui/bridge/log_view.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
 #include "basestation/gui/bridge/settings.hpp"
+#include "basestation/gui/bridge/tables.hpp"
 #include "basestation/model/found.hpp"
 #include "basestation/model/health.hpp"
 #include "basestation/model/network.hpp"
@@ -27,7 +28,6 @@ class TabState : public QObject {
   QML_ELEMENT
   QML_UNCREATABLE("a part of the control")
   Q_PROPERTY(QString open READ open NOTIFY opened)
-  Q_PROPERTY(bool logOpen READ log_open NOTIFY opened)
   Q_PROPERTY(QAbstractItemModel* tabs READ tabs CONSTANT)
   Q_PROPERTY(adit::gui::LogView* log READ log CONSTANT)
   Q_PROPERTY(adit::gui::WindowSettings* settings READ settings CONSTANT)
@@ -41,10 +41,8 @@ class TabState : public QObject {
   Q_PROPERTY(QAbstractItemModel* findings READ findings CONSTANT)
   Q_PROPERTY(QString missing READ missing NOTIFY shown)
   Q_PROPERTY(QString problem READ problem NOTIFY shown)
-  Q_PROPERTY(QString chosenTitle READ chosen_title NOTIFY shown)
-  Q_PROPERTY(QString chosenText READ chosen_text NOTIFY shown)
-  Q_PROPERTY(bool chosenMine READ chosen_mine NOTIFY shown)
-  Q_PROPERTY(bool chosenAutomatic READ chosen_automatic NOTIFY shown)
+  /// The keys title, text, mine and automatic, as in HealthDetail.
+  Q_PROPERTY(QVariantMap chosen READ chosen NOTIFY shown)
   Q_PROPERTY(int noting READ noting NOTIFY shown)
   Q_PROPERTY(int pickedFinding READ picked NOTIFY shown)
   /// The row of that finding; -1: none.
@@ -65,7 +63,6 @@ class TabState : public QObject {
   bool close();
 
   QString open() const { return extra_.isEmpty() ? (log_open_ ? "log" : "") : extra_; }
-  bool log_open() const { return log_open_; }
   Q_INVOKABLE void toggle(const QString& tab);
   /// Chooses a component for the details below the matrix.
   Q_INVOKABLE void choose(const QString& robot, const QString& component);
@@ -94,10 +91,7 @@ class TabState : public QObject {
   QAbstractItemModel* findings() { return &findings_; }
   const QString& missing() const { return missing_; }
   const QString& problem() const { return problem_; }
-  const QString& chosen_title() const { return chosen_title_; }
-  const QString& chosen_text() const { return chosen_text_; }
-  bool chosen_mine() const { return chosen_mine_; }
-  bool chosen_automatic() const { return chosen_automatic_; }
+  QVariantMap chosen() const;
   int noting() const { return noting_; }
   std::uint32_t picked() const { return picked_; }  ///< Number of the marked finding; 0: none.
   int picked_row() const;
@@ -125,7 +119,6 @@ class TabState : public QObject {
                Report& report, void (TabState::*show)());
   void show_tabs();
   void show_health();
-  void show_chosen();
   void show_network();
   void show_findings();
   void write(const QString& name, const QByteArray& content);
@@ -149,8 +142,7 @@ class TabState : public QObject {
   station::FoundReport found_{};
   QString missing_{}, problem_{};
   std::string chosen_robot_{}, chosen_component_{};
-  QString chosen_title_{}, chosen_text_{};
-  bool chosen_mine_{false}, chosen_automatic_{false};
+  HealthDetail chosen_{};
   int noting_{0};
   std::uint32_t picked_{0};
 };

@@ -2,7 +2,6 @@
 // What the tabs show of the station's answers.
 #include <algorithm>
 
-#include "basestation/gui/bridge/tables.hpp"
 #include "basestation/gui/bridge/tabs.hpp"
 
 namespace adit::gui {
@@ -33,15 +32,14 @@ void TabState::show_health() {
   }
   columns_.show(std::move(columns));
   cells_.show(std::move(cells));
-  show_chosen();
+  chosen_ = health_detail(health_, *world_, chosen_robot_, chosen_component_);
 }
 
-void TabState::show_chosen() {
-  const HealthDetail detail = health_detail(health_, *world_, chosen_robot_, chosen_component_);
-  chosen_title_ = text_of(detail.title);
-  chosen_text_ = text_of(detail.text);
-  chosen_mine_ = detail.known && detail.mine;
-  chosen_automatic_ = detail.automatic;
+QVariantMap TabState::chosen() const {
+  return {{"title", text_of(chosen_.title)},
+          {"text", text_of(chosen_.text)},
+          {"mine", chosen_.mine},
+          {"automatic", chosen_.automatic}};
 }
 
 void TabState::show_network() {

@@ -71,17 +71,17 @@ TypedLine read_line(const std::string& line) {
   if (!request) return {Kind::wrong, request.error().text};
   if (request->info->runs == command::Runs::terminal)
     return {Kind::wrong, std::string(request->info->name) + ": only in a terminal: basestation " + line};
-  if (request->verb == command::verb("stop"))
-    return {Kind::stop, {}, request->all ? std::vector<std::string>{} : request->robots};
-  return {Kind::order};
+  TypedLine typed{.kind = request->verb == command::verb("stop") ? Kind::stop : Kind::order,
+                  .robots = request->robots,
+                  .all = request->all};
+  if (request->info->runs == command::Runs::query) return typed;
+  typed.action = request->info->name;
+  if (const std::string mode = request->word("MODE"); !mode.empty()) typed.action += "_" + mode;
+  return typed;
 }
 
-bool line_is_held(const std::string& line, std::size_t heard) {
-  const auto request = command::parse(line);
-  if (!request || request->info->runs == command::Runs::query) return false;
-  std::string action(request->info->name);
-  if (const std::string mode = request->word("MODE"); !mode.empty()) action += "_" + mode;
-  return needs_hold(action, request->all ? heard : request->robots.size());
+bool TypedLine::is_held(std::size_t heard) const {
+  return !action.empty() && needs_hold(action, all ? heard : robots.size());
 }
 
 }  // namespace adit::gui

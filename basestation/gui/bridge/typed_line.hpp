@@ -14,16 +14,18 @@ std::string with_word(const std::string& line, const std::string& word);
 /// The line as far as all proposals agree; with a blank after the word if there is only one.
 std::string completed(const std::string& line, const std::vector<std::string>& robots);
 
-/// What is to be done with a line that was typed.
+/// A line that was typed, parsed.
 struct TypedLine {
   enum class Kind : std::uint8_t { nothing, wrong, help, stop, order };
   Kind kind{Kind::nothing};
   std::string text{};                 ///< What is wrong, or the help.
-  std::vector<std::string> robots{};  ///< Of a stop; empty: all.
+  std::vector<std::string> robots{};  ///< That it names.
+  bool all{};                         ///< It means all robots.
+  std::string action{};               ///< As for needs_hold(); empty: it asks only.
+
+  /// Whether it commands so many robots that it is confirmed. `heard`: how many "all" are.
+  bool is_held(std::size_t heard) const;
 };
 TypedLine read_line(const std::string& line);
-/// Whether a line commands so many robots that it is confirmed; see needs_hold(). `heard`: how many "all"
-/// are.
-bool line_is_held(const std::string& line, std::size_t heard);
 
 }  // namespace adit::gui

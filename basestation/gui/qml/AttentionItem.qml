@@ -17,7 +17,7 @@ Rectangle {
     required property bool canWait
     required property string grantLabel
     property int maximumLines: 2
-    readonly property double wantedHeight: full.implicitHeight + 3 * Theme.mm
+    readonly property double wantedHeight: text.fullHeight + 3 * Theme.mm
     readonly property color ink: urgent ? Theme.ink : Theme.text
 
     radius: 1 * Theme.mm
@@ -71,14 +71,6 @@ Rectangle {
         full: item.line
         brief: item.shortLine
         color: item.ink
-    }
-    PlainLabel {
-        id: full
-        visible: false
-        width: text.width
-        wrapMode: Text.Wrap
-        maximumLineCount: item.maximumLines
-        text: item.line
     }
     PlainLabel {
         id: age

@@ -12,14 +12,10 @@ Rectangle {
     border.width: 1
     border.color: Theme.edge
 
-    ListView {
+    PlainList {
         id: list
         objectName: "allNeeds"
-        anchors.fill: parent
-        anchors.margins: 1.5 * Theme.mm
-        clip: true
         spacing: 1 * Theme.mm
-        boundsBehavior: Flickable.StopAtBounds
         model: menu.visible ? menu.attention.rows : null
         delegate: AttentionItem {
             attention: menu.attention

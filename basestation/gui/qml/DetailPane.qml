@@ -32,16 +32,13 @@ Rectangle {
         spoken: "close the details"
         onFired: pane.details.open = false
     }
-    ListView {
+    PlainList {
         id: list
         objectName: "details"
-        anchors.fill: parent
         anchors.topMargin: heading.height
         anchors.leftMargin: 3 * Theme.mm
-        anchors.rightMargin: 1.5 * Theme.mm
-        clip: true
+        anchors.bottomMargin: 0
         currentIndex: -1
-        boundsBehavior: Flickable.StopAtBounds
         model: pane.visible ? pane.details.rows : null
         delegate: Item {
             id: row

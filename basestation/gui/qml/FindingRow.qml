@@ -69,8 +69,8 @@ Rectangle {
             height: 13 * Theme.mm
             active: row.verdict === "confirmed"
             meaning: row.number + row.verdict
-            text: row.verdict === "confirmed" ? "confirmed" : "confirm"
-            onFired: row.state_.judge(row.number, row.verdict === "confirmed" ? "reopen" : "confirm")
+            text: active ? "confirmed" : "confirm"
+            onFired: row.state_.judge(row.number, active ? "reopen" : "confirm")
         }
         HoldButton {
             objectName: "reject_" + row.number
@@ -78,8 +78,8 @@ Rectangle {
             height: 13 * Theme.mm
             active: row.verdict === "rejected"
             meaning: row.number + row.verdict
-            text: row.verdict === "rejected" ? "rejected" : "reject"
-            onFired: row.state_.judge(row.number, row.verdict === "rejected" ? "reopen" : "reject")
+            text: active ? "rejected" : "reject"
+            onFired: row.state_.judge(row.number, active ? "reopen" : "reject")
         }
         HoldButton {
             objectName: "note_" + row.number

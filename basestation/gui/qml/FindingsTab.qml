@@ -8,15 +8,11 @@ Item {
     required property Control control
     readonly property TabState state_: control.tabs
 
-    ListView {
+    PlainList {
         id: list
         objectName: "findings"
-        anchors.fill: parent
-        anchors.margins: 1.5 * Theme.mm
         anchors.bottomMargin: 15 * Theme.mm
-        clip: true
         spacing: 1
-        boundsBehavior: Flickable.StopAtBounds
         model: tab.state_.findings
         currentIndex: tab.state_.pickedRow
         highlightMoveDuration: 0

@@ -8,6 +8,7 @@ PlainLabel {
     property string full
     property string brief: full
     readonly property double fullWidth: probe.implicitWidth
+    readonly property double fullHeight: probe.implicitHeight
 
     text: probe.truncated ? brief : full
     PlainLabel {

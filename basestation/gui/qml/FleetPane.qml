@@ -7,14 +7,10 @@ Rectangle {
     required property Control control
     color: Theme.ground
 
-    ListView {
+    PlainList {
         id: list
         objectName: "fleet"
-        anchors.fill: parent
-        anchors.margins: 1.5 * Theme.mm
         spacing: 1.5 * Theme.mm
-        clip: true
-        boundsBehavior: Flickable.StopAtBounds
         model: pane.control.robots
         delegate: RobotCard {
             control: pane.control

@@ -7,57 +7,24 @@ Item {
     id: tab
     required property Control control
     readonly property TabState state_: control.tabs
-    readonly property int places: state_.columnCount + 1
-    readonly property double place: Math.max(25 * Theme.mm, (width - 3 * Theme.mm) / places)
 
-    Flickable {
-        id: wide
+    Matrix {
+        id: grid
         objectName: "health"
         x: 1.5 * Theme.mm
         y: 1 * Theme.mm
         width: parent.width - 3 * Theme.mm
         height: detail.y - y
-        clip: true
-        contentWidth: tab.place * tab.places
-        contentHeight: height
-        flickableDirection: Flickable.HorizontalFlick
-        boundsBehavior: Flickable.StopAtBounds
-        PlainLabel {
-            width: tab.place
-            height: 6 * Theme.mm
-            leftPadding: 1 * Theme.mm
-            color: Theme.dim
-            text: "robot"
-        }
-        Repeater {
-            model: tab.state_.columns
-            PlainLabel {
-                required property int index
-                required property string name
-                x: (index + 1) * tab.place
-                width: tab.place
-                height: 6 * Theme.mm
-                leftPadding: 1 * Theme.mm
-                color: Theme.dim
-                text: name
-            }
-        }
-        GridView {
-            id: grid
-            y: 6 * Theme.mm
-            width: tab.place * tab.places + 0.5
-            height: parent.height - y
-            clip: true
-            boundsBehavior: Flickable.StopAtBounds
-            flickableDirection: Flickable.VerticalFlick
-            cellWidth: tab.place
-            cellHeight: 13 * Theme.mm
-            model: tab.state_.cells
-            delegate: HealthCell {
-                width: grid.cellWidth - 1
-                height: grid.cellHeight - 1
-                onChosenByTap: tab.state_.choose(robot, component)
-            }
+        minimumPlace: 25 * Theme.mm
+        corner: "robot"
+        columns: tab.state_.columns
+        columnCount: tab.state_.columnCount
+        cells: tab.state_.cells
+        cellHeight: 13 * Theme.mm
+        delegate: HealthCell {
+            width: grid.place - 1
+            height: grid.cellHeight - 1
+            onChosenByTap: tab.state_.choose(robot, component)
         }
     }
     PlainLabel {
@@ -82,8 +49,8 @@ Item {
             width: policy.x - 5 * Theme.mm
             height: 5.5 * Theme.mm
             font.bold: true
-            color: tab.state_.chosenTitle === "" ? Theme.dim : Theme.text
-            text: tab.state_.chosenTitle === "" ? "tap a component to see why, and to restart it" : tab.state_.chosenTitle
+            color: tab.state_.chosen.title === "" ? Theme.dim : Theme.text
+            text: tab.state_.chosen.title === "" ? "tap a component to see why, and to restart it" : tab.state_.chosen.title
         }
         PlainLabel {
             objectName: "healthText"
@@ -93,7 +60,7 @@ Item {
             height: 10 * Theme.mm
             wrapMode: Text.Wrap
             maximumLineCount: 2
-            text: tab.state_.chosenText
+            text: tab.state_.chosen.text
         }
         HoldButton {
             id: policy
@@ -102,10 +69,10 @@ Item {
             y: 2 * Theme.mm
             width: 46 * Theme.mm
             height: 13 * Theme.mm
-            opacity: tab.state_.chosenMine ? 1 : 0.35
-            hold: tab.state_.chosenMine
-            meaning: tab.state_.chosenTitle + text
-            text: tab.state_.chosenTitle === "" ? "policy" : tab.state_.chosenAutomatic ? "auto → manual" : "manual → auto"
+            opacity: tab.state_.chosen.mine ? 1 : 0.35
+            hold: tab.state_.chosen.mine
+            meaning: tab.state_.chosen.title + text
+            text: tab.state_.chosen.title === "" ? "policy" : tab.state_.chosen.automatic ? "auto → manual" : "manual → auto"
             onFired: held => held && tab.state_.changePolicy()
         }
         HoldButton {
@@ -115,9 +82,9 @@ Item {
             y: 2 * Theme.mm
             width: 36 * Theme.mm
             height: 13 * Theme.mm
-            opacity: tab.state_.chosenMine ? 1 : 0.35
-            hold: tab.state_.chosenMine
-            meaning: tab.state_.chosenTitle
+            opacity: tab.state_.chosen.mine ? 1 : 0.35
+            hold: tab.state_.chosen.mine
+            meaning: tab.state_.chosen.title
             text: "Restart"
             onFired: held => held && tab.state_.restartChosen()
         }

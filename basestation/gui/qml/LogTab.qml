@@ -10,14 +10,10 @@ Rectangle {
     readonly property double side: 62 * Theme.mm
     color: Theme.panel
 
-    ListView {
+    PlainList {
         id: list
         objectName: "log"
-        anchors.fill: parent
-        anchors.margins: 1.5 * Theme.mm
         anchors.rightMargin: tab.side
-        clip: true
-        boundsBehavior: Flickable.StopAtBounds
         model: tab.log.lines
         onContentYChanged: tab.log.paused = contentY > originY + 2
         delegate: LogLine {

@@ -64,33 +64,35 @@ Rectangle {
         anchors.bottom: parent.bottom
         anchors.bottomMargin: 3 * Theme.mm
     }
+    component Wide: HoldButton {
+        width: 22 * Theme.mm
+        height: 10 * Theme.mm
+    }
+    component Square: HoldButton {
+        width: 10 * Theme.mm
+        height: width
+    }
     Column {
         anchors.right: parent.right
         anchors.top: parent.top
         anchors.margins: 2 * Theme.mm
         spacing: 2 * Theme.mm
-        HoldButton {
+        Wide {
             objectName: "fitAll"
             anchors.right: parent.right
-            width: 22 * Theme.mm
-            height: 10 * Theme.mm
             text: map.fitting && !pane.control.solid ? "● fit all" : "fit all"
             onFired: pane.control.solid ? solid.fitAll() : map.fitAll()
         }
-        HoldButton {
+        Wide {
             objectName: "solidToggle"
             anchors.right: parent.right
-            width: 22 * Theme.mm
-            height: 10 * Theme.mm
             text: pane.control.solid ? "2D  v" : "3D  v"
             onFired: pane.control.solid = !pane.control.solid
         }
-        HoldButton {
+        Wide {
             objectName: "cutToggle"
             anchors.right: parent.right
             visible: pane.control.solid
-            width: 22 * Theme.mm
-            height: 10 * Theme.mm
             active: solid.cutting
             text: solid.cutting ? "≤ " + solid.cut.toFixed(1) + " m" : "all heights"
             onFired: solid.toggleCut()
@@ -99,22 +101,8 @@ Rectangle {
             visible: !pane.control.solid && map.floor !== ""
             anchors.right: parent.right
             spacing: 1 * Theme.mm
-            HoldButton {
-                objectName: "floorDown"
-                width: 10 * Theme.mm
-                height: width
-                text: "↓"
-                spoken: "lower floor"
-                onFired: map.moveFloor(-1)
-            }
-            HoldButton {
-                objectName: "floorUp"
-                width: 10 * Theme.mm
-                height: width
-                text: "↑"
-                spoken: "higher floor"
-                onFired: map.moveFloor(1)
-            }
+            Square { objectName: "floorDown"; text: "↓"; spoken: "lower floor"; onFired: map.moveFloor(-1) }
+            Square { objectName: "floorUp"; text: "↑"; spoken: "higher floor"; onFired: map.moveFloor(1) }
             HoldButton {
                 objectName: "floorToggle"
                 width: 30 * Theme.mm
@@ -128,18 +116,14 @@ Rectangle {
             visible: !pane.control.solid
             anchors.right: parent.right
             spacing: 1 * Theme.mm
-            HoldButton {
+            Wide {
                 objectName: "receptionToggle"
-                width: 22 * Theme.mm
-                height: 10 * Theme.mm
                 active: map.reception
                 text: "signal"
                 onFired: map.reception = !map.reception
             }
-            HoldButton {
+            Wide {
                 objectName: "areaToggle"
-                width: 22 * Theme.mm
-                height: 10 * Theme.mm
                 active: pane.control.area.active
                 text: "area"
                 onFired: pane.control.area.active = !pane.control.area.active
@@ -148,22 +132,8 @@ Rectangle {
         Row {
             anchors.right: parent.right
             spacing: 2 * Theme.mm
-            HoldButton {
-                objectName: "zoomOut"
-                width: 10 * Theme.mm
-                height: width
-                text: "−"
-                spoken: "zoom out"
-                onFired: pane.control.solid ? solid.zoomBy(1 / 1.5) : map.zoomBy(1 / 1.5)
-            }
-            HoldButton {
-                objectName: "zoomIn"
-                width: 10 * Theme.mm
-                height: width
-                text: "+"
-                spoken: "zoom in"
-                onFired: pane.control.solid ? solid.zoomBy(1.5) : map.zoomBy(1.5)
-            }
+            Square { objectName: "zoomOut"; text: "−"; spoken: "zoom out"; onFired: pane.control.solid ? solid.zoomBy(1 / 1.5) : map.zoomBy(1 / 1.5) }
+            Square { objectName: "zoomIn"; text: "+"; spoken: "zoom in"; onFired: pane.control.solid ? solid.zoomBy(1.5) : map.zoomBy(1.5) }
         }
     }
 }

@@ -18,6 +18,9 @@ Rectangle {
     readonly property double third: (width - 34 * Theme.mm) / 2
     height: 13 * Theme.mm
     color: Theme.raised
+    component Words: PlainLabel {
+        height: 5.4 * Theme.mm
+    }
 
     Glyph {
         x: 1.5 * Theme.mm
@@ -38,27 +41,24 @@ Rectangle {
         font.bold: true
         text: row.agent
     }
-    PlainLabel {
+    Words {
         x: 34 * Theme.mm
         y: 1 * Theme.mm
         width: row.third - 2 * Theme.mm
-        height: 5.4 * Theme.mm
         text: row.loss
     }
-    PlainLabel {
+    Words {
         x: 34 * Theme.mm
         y: 6.6 * Theme.mm
         width: row.third - 2 * Theme.mm
-        height: 5.4 * Theme.mm
         color: Theme.dim
         text: row.trip + (row.rates === "" ? "" : "  ·  " + row.rates)
     }
-    PlainLabel {
+    Words {
         objectName: "budget"
         x: 34 * Theme.mm + row.third
         y: 1 * Theme.mm
         width: row.third - 1.5 * Theme.mm
-        height: 5.4 * Theme.mm
         text: row.budget + (row.dropped === "" ? "" : "  ·  " + row.dropped)
     }
     Rectangle {
@@ -92,11 +92,10 @@ Rectangle {
             }
         }
     }
-    PlainLabel {
+    Words {
         x: row.share < 0 ? bar.x : bar.x + bar.width + 1.5 * Theme.mm
         y: 6.6 * Theme.mm
         width: row.width - x - 1.5 * Theme.mm
-        height: 5.4 * Theme.mm
         color: Theme.dim
         text: row.queue
     }

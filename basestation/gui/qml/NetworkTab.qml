@@ -9,16 +9,12 @@ Item {
     readonly property TabState state_: control.tabs
     property bool matrix: false
 
-    ListView {
+    PlainList {
         id: list
         objectName: "network"
         visible: !tab.matrix
-        anchors.fill: parent
-        anchors.margins: 1.5 * Theme.mm
         anchors.bottomMargin: 12 * Theme.mm
-        clip: true
         spacing: 1
-        boundsBehavior: Flickable.StopAtBounds
         model: tab.state_.network
         delegate: NetworkRow {
             width: list.width

@@ -20,7 +20,7 @@ Rectangle {
         objectName: "outcome"
         anchors.left: mark.right
         anchors.leftMargin: 2 * Theme.mm
-        anchors.right: command.left
+        anchors.right: buttons.left
         anchors.rightMargin: 2 * Theme.mm
         height: parent.height
         wrapMode: Text.Wrap
@@ -29,39 +29,35 @@ Rectangle {
         full: row.control.outcome === "" ? "No command yet. Tap a robot, then an action; press and hold on the map to send it there." : row.control.outcome
         color: row.control.outcome === "" ? Theme.dim : Theme.text
     }
-    HoldButton {
-        id: command
-        objectName: "commandToggle"
-        anchors.right: details.left
-        anchors.rightMargin: 2 * Theme.mm
-        width: 28 * Theme.mm
-        height: toggle.height
-        anchors.verticalCenter: parent.verticalCenter
-        text: "command  :"
-        onFired: row.control.commandLine.open = true
-    }
-    HoldButton {
-        id: details
-        objectName: "detailsToggle"
-        anchors.right: toggle.visible ? toggle.left : parent.right
-        anchors.rightMargin: 2 * Theme.mm
-        width: 24 * Theme.mm
-        height: toggle.height
-        anchors.verticalCenter: parent.verticalCenter
-        active: row.control.details.open
-        text: "details  i"
-        onFired: row.control.details.open = !row.control.details.open
-    }
-    HoldButton {
-        id: toggle
-        objectName: "notNow"
-        visible: row.control.refusalCount > 0
+    Row {
+        id: buttons
         anchors.right: parent.right
         anchors.rightMargin: 2 * Theme.mm
-        width: 34 * Theme.mm
-        height: parent.height - 1 * Theme.mm
         anchors.verticalCenter: parent.verticalCenter
-        text: "not now (" + row.control.refusalCount + ") " + (row.control.reasonsOpen ? "▾" : "▴")
-        onFired: row.control.reasonsOpen = !row.control.reasonsOpen
+        height: parent.height - 1 * Theme.mm
+        spacing: 2 * Theme.mm
+        HoldButton {
+            objectName: "commandToggle"
+            width: 28 * Theme.mm
+            height: parent.height
+            text: "command  :"
+            onFired: row.control.commandLine.open = true
+        }
+        HoldButton {
+            objectName: "detailsToggle"
+            width: 24 * Theme.mm
+            height: parent.height
+            active: row.control.details.open
+            text: "details  i"
+            onFired: row.control.details.open = !row.control.details.open
+        }
+        HoldButton {
+            objectName: "notNow"
+            visible: row.control.refusalCount > 0
+            width: 34 * Theme.mm
+            height: parent.height
+            text: "not now (" + row.control.refusalCount + ") " + (row.control.reasonsOpen ? "▾" : "▴")
+            onFired: row.control.reasonsOpen = !row.control.reasonsOpen
+        }
     }
 }

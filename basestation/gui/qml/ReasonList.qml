@@ -12,13 +12,9 @@ Rectangle {
     border.width: 1
     border.color: Theme.edge
 
-    ListView {
+    PlainList {
         id: list
         objectName: "reasons"
-        anchors.fill: parent
-        anchors.margins: 1.5 * Theme.mm
-        clip: true
-        boundsBehavior: Flickable.StopAtBounds
         model: reasons.control.refusals
         delegate: Item {
             id: line

@@ -112,9 +112,11 @@ Rectangle {
         font.bold: card.contact !== "live"
         color: card.contact === "live" ? Theme.dim : Theme.text
     }
-    DashedFrame {
+    Glyph {  // Its values are old.
         visible: card.contact !== "live"
         anchors.fill: parent
+        kind: "frame"
+        colour: Theme.warn
     }
     PressArea {
         objectName: "card_" + card.name

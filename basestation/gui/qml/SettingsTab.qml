@@ -7,6 +7,10 @@ Item {
     id: tab
     required property Control control
     readonly property WindowSettings settings: control.tabs.settings
+    component Button: HoldButton {
+        width: 30 * Theme.mm
+        height: 13 * Theme.mm
+    }
 
     Flickable {
         objectName: "settings"
@@ -23,23 +27,20 @@ Item {
                 width: parent.width
                 title: "Glove mode"
                 text: "targets of 20 mm, and 0.8 s for a long press on the map"
-                HoldButton {
+                Button {
                     objectName: "glove"
-                    width: 30 * Theme.mm
-                    height: 13 * Theme.mm
-                    active: tab.settings.glove
-                    text: tab.settings.glove ? "on" : "off"
-                    onFired: tab.settings.glove = !tab.settings.glove
+                    active: Theme.glove
+                    text: Theme.glove ? "on" : "off"
+                    onFired: Theme.glove = !Theme.glove
                 }
             }
             SettingRow {
                 width: parent.width
                 title: "Size"
                 text: "the line is 50 mm long where it is right; screens state their size wrongly"
-                HoldButton {
+                Button {
                     objectName: "smaller"
-                    width: 13 * Theme.mm
-                    height: 13 * Theme.mm
+                    width: height
                     text: "−"
                     spoken: "smaller"
                     onFired: tab.settings.scale -= 0.05
@@ -51,10 +52,9 @@ Item {
                     horizontalAlignment: Text.AlignHCenter
                     text: Math.round(tab.settings.scale * 100) + " %"
                 }
-                HoldButton {
+                Button {
                     objectName: "larger"
-                    width: 13 * Theme.mm
-                    height: 13 * Theme.mm
+                    width: height
                     text: "+"
                     spoken: "larger"
                     onFired: tab.settings.scale += 0.05
@@ -70,22 +70,18 @@ Item {
                 width: parent.width
                 title: "Theme"
                 text: "light for sunlight; also Ctrl+L"
-                HoldButton {
+                Button {
                     objectName: "theme"
-                    width: 30 * Theme.mm
-                    height: 13 * Theme.mm
-                    text: tab.settings.light ? "light" : "dark"
-                    onFired: tab.settings.light = !tab.settings.light
+                    text: Theme.light ? "light" : "dark"
+                    onFired: Theme.light = !Theme.light
                 }
             }
             SettingRow {
                 width: parent.width
                 title: "Defaults"
                 text: tab.settings.file === "" ? "changes are not stored" : "stored in " + tab.settings.file
-                HoldButton {
+                Button {
                     objectName: "restore"
-                    width: 30 * Theme.mm
-                    height: 13 * Theme.mm
                     opacity: tab.settings.isDefault ? 0.35 : 1
                     text: "restore"
                     onFired: tab.settings.restoreDefaults()

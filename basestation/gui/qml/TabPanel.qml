@@ -26,33 +26,13 @@ Rectangle {
         anchors.fill: parent
         visible: panel.open === "log"
     }
+    Component { id: findings; FindingsTab { control: panel.control } }
+    Component { id: health; HealthTab { control: panel.control } }
+    Component { id: network; NetworkTab { control: panel.control } }
+    Component { id: settings; SettingsTab { control: panel.control } }
     Loader {
         anchors.fill: parent
-        active: panel.open === "findings"
-        sourceComponent: FindingsTab {
-            control: panel.control
-        }
-    }
-    Loader {
-        anchors.fill: parent
-        active: panel.open === "health"
-        sourceComponent: HealthTab {
-            control: panel.control
-        }
-    }
-    Loader {
-        anchors.fill: parent
-        active: panel.open === "network"
-        sourceComponent: NetworkTab {
-            control: panel.control
-        }
-    }
-    Loader {
-        anchors.fill: parent
-        active: panel.open === "settings"
-        sourceComponent: SettingsTab {
-            control: panel.control
-        }
+        sourceComponent: ({ findings: findings, health: health, network: network, settings: settings })[panel.open] ?? null
     }
     Rectangle {
         width: parent.width
