@@ -78,7 +78,9 @@ json info_json(const Action& action) {
           {"danger", kDangers.at(static_cast<std::size_t>(info.danger))},
           {"robots_min", robots.min_count},
           {"robots_max", robots.max_count},
-          {"all_robots", robots.all != command::AllRobots::refused},
+          {"all_robots", robots.all != command::AllRobots::refused &&
+                             (robots.all_only.empty() || robots.all_only == action.mode)},
+          {"all_only", action.mode.empty() ? robots.all_only : ""},
           {"usage", command::usage(info)}};
 }
 

@@ -25,6 +25,10 @@ TEST(Complete, CommandsThenRobotsThenArguments) {
   EXPECT_THAT(complete({"mode", "r1", ""}, kRobots), Contains("waypoint"));
   EXPECT_THAT(complete({"mode", "r1", ""}, kRobots), Contains("r2"));
   EXPECT_THAT(complete({"mode", ""}, kRobots), ElementsAre("r1", "r2", "all"));
+  EXPECT_THAT(complete({"mode", "all", ""}, kRobots), ElementsAre("hold"))
+      << "the only mode that all may enter";
+  EXPECT_THAT(complete({"yield", "all", ""}, kRobots), ElementsAre("off"));
+  EXPECT_THAT(complete({"release", ""}, kRobots), ElementsAre("r1", "r2"));
   EXPECT_THAT(complete({"policy", "r1", ""}, kRobots), ElementsAre("planner", "router", "sensors", "map"));
   EXPECT_THAT(complete({"policy", "r1", "planner", ""}, kRobots), ElementsAre("auto", "manual"));
   EXPECT_THAT(complete({"help", ""}, kRobots), Contains("goto"));

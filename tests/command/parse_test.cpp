@@ -74,9 +74,9 @@ TEST(Parse, StopOfAllAndResetWithOverride) {
 }
 
 TEST(Parse, AllWhereTheCommandMovesNoRobot) {
-  for (const char* line : {"reset all", "reset all --override", "take all", "release all", "lock all",
-                           "unlock all", "mode all hold", "yield all off", "actions all",
-                           "area all add shaft keep_out 3 20 11 25", "area all remove shaft"}) {
+  for (const char* line :
+       {"reset all", "reset all --override", "take all", "lock all", "unlock all", "mode all hold",
+        "yield all off", "actions all", "area all add shaft keep_out 3 20 11 25"}) {
     const auto request = parse(line);
     ASSERT_TRUE(request) << line << ": " << request.error().text;
     EXPECT_TRUE(request->all) << line;
@@ -84,12 +84,13 @@ TEST(Parse, AllWhereTheCommandMovesNoRobot) {
   }
   EXPECT_TRUE(parse("reset all --override")->has("--override"));
   EXPECT_EQ(parse("mode all hold")->word("MODE"), "hold");
-  EXPECT_EQ(parse("area all remove shaft")->word("NAME"), "shaft");
+  EXPECT_EQ(parse("area all add shaft keep_out 3 20 11 25")->word("NAME"), "shaft");
   const auto area = parse("area r1 add all keep_out 3 20 11 25");
   ASSERT_TRUE(area) << area.error().text;
   EXPECT_FALSE(area->all) << "here it is the name of the area";
-  for (const char* line : {"mode all waypoint", "mode r1 all explore", "yield all on", "home all",
-                           "explore all", "peeloff all", "goto all 1 2", "drive all 1 0 0", "plan all 1 2"}) {
+  for (const char* line :
+       {"mode all waypoint", "mode r1 all explore", "yield all on", "home all", "explore all", "peeloff all",
+        "goto all 1 2", "drive all 1 0 0", "plan all 1 2", "release all", "area all remove shaft"}) {
     const auto request = parse(line);
     EXPECT_FALSE(request) << line;
     if (!request) {
@@ -97,6 +98,9 @@ TEST(Parse, AllWhereTheCommandMovesNoRobot) {
       EXPECT_THAT(request.error().text, HasSubstr("all")) << line;
     }
   }
+  // Robots that wait at an area would drive on, and robots that drive would have no holder.
+  for (const char* line : {"release all", "area all remove shaft"})
+    EXPECT_THAT(parse(line).error().text, HasSubstr("it does not take all: name each robot"));
 }
 
 TEST(Help, ExplainsEveryArgumentAndOption) {

@@ -149,13 +149,12 @@ TEST_F(Actions, HomeAsksForWaypointAndPoseForHold) {
 TEST_F(Actions, SayWhatACommandTakesAndHowDangerousItIs) {
   own("r1", "op1", kAskingId);
   const RobotView* robot = fleet_.robot("r1");
-  nlohmann::json grant, go_to, stop, waypoint;
-  for (const nlohmann::json& row : actions_json(actions({robot}))) {
-    if (row["command"] == "grant") grant = row;
-    if (row["command"] == "goto") go_to = row;
-    if (row["command"] == "stop") stop = row;
-    if (row["command"] == "mode waypoint") waypoint = row;
-  }
+  const nlohmann::json rows = actions_json(actions({robot}));
+  const auto row = [&](const char* id) -> const nlohmann::json& {
+    return *std::ranges::find_if(rows, [&](const nlohmann::json& any) { return any["id"] == id; });
+  };
+  const nlohmann::json &grant = row("grant"), &go_to = row("goto"), &stop = row("stop"),
+                       &waypoint = row("mode_waypoint");
   EXPECT_EQ(grant["id"], "grant");
   EXPECT_EQ(grant["label"], "Grant");
   EXPECT_EQ(go_to["id"], "goto");
@@ -177,6 +176,10 @@ TEST_F(Actions, SayWhatACommandTakesAndHowDangerousItIs) {
   EXPECT_EQ(stop["robots_max"], 64);
   EXPECT_EQ(stop["robots_min"], 1);
   EXPECT_TRUE(stop["all_robots"]);
+  EXPECT_FALSE(waypoint["all_robots"]) << "`mode all waypoint` is refused";
+  EXPECT_TRUE(row("mode_hold")["all_robots"]);
+  EXPECT_FALSE(row("yield")["all_robots"]) << "`yield all on` is refused";
+  EXPECT_EQ(row("yield")["all_only"], "off");
 }
 
 }  // namespace
