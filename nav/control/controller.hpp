@@ -11,6 +11,7 @@
 
 namespace adit::nav {
 
+/// Parameters that all controllers share.
 struct ControllerParams {
   /// Starts to turn on the spot above this heading error at the path's start, rad, [0.1, 3].
   double turn_from{0.45};
@@ -42,10 +43,9 @@ class Controller {
 
  protected:
   /// Position of the robot along the path.
-  /// Index of the path's nearest pose.
   struct Place {
-    std::size_t nearest{};
-    double remaining{};  ///< Length of the path from there to its end, m.
+    std::size_t nearest{};  ///< Index of the path's nearest pose.
+    double remaining{};     ///< Length of the path from there to its end, m.
   };
   /// Computes the next velocity along plan().path(), which has at least two poses. Limits of acceleration are
   /// applied afterwards. Poses are those of the point that does not move sideways: the rear axle of a car,

@@ -16,6 +16,7 @@ struct Reference {
   Twist2 twist{};  ///< Body frame.
 };
 
+/// Weights and limits of the solver Ilqr.
 struct IlqrParams {
   double along{2.0};     ///< Cost of the error along the reference's heading, 1/m2, (0, 1e4].
   double across{30.0};   ///< Cost of the error across it, 1/m2, (0, 1e4].
@@ -49,6 +50,7 @@ class Ilqr {
     /// 1: the limit of this velocity state is never exceeded, as for a car's steering; 0: excess has a cost.
     V hard{V::Zero()};
   };
+  /// Result of a solve: its final cost and number of iterations.
   struct Report {
     double cost{};
     int iterations{};

@@ -7,6 +7,7 @@
 
 namespace adit::nav {
 
+/// Parameters of the model predictive controller.
 struct IlqrControllerParams {
   ControllerParams common{};
   IlqrParams solver{};

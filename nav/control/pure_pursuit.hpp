@@ -4,6 +4,7 @@
 
 namespace adit::nav {
 
+/// Parameters of PurePursuit.
 struct PurePursuitParams {
   ControllerParams common{};
   double lookahead{0.35};      ///< Minimum lookahead distance, m, [0.1, 2].

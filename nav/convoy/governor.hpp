@@ -10,11 +10,13 @@ namespace adit::nav {
 /// that the convoy is split.
 class Governor {
  public:
+  /// State of the convoy behind its leader.
   struct Members {
     double longest_gap{};  ///< Between two neighbours, m.
     double slowest{};      ///< Speed of the member behind that gap, m/s.
     double silence{};      ///< Longest time since a member's beacon, s.
   };
+  /// Thresholds and waiting times.
   struct Params {
     double min_gap{6.0};       ///< A gap below this is never too long, m.
     double gap_ratio{4.0};     ///< A gap above this many times the gap at rest is too long.
@@ -26,6 +28,7 @@ class Governor {
     double splice_wait{10.0};  ///< Longest time at that speed, s.
     double spliced{0.8};       ///< They have closed up when each gap is less than that wider than at rest, m.
   };
+  /// Limits of the leader's speed.
   struct Verdict {
     double limit{std::numeric_limits<double>::infinity()};  ///< m/s
     double share{1.0};                                      ///< Of the speed that is set for the convoy.

@@ -34,6 +34,7 @@ class CoverageMap {
     std::uint16_t tried{0};  ///< The robot looked from a place that should show it, and saw nothing.
     std::uint16_t seen() const { return free | hit; }
   };
+  /// A square of columns over one band of heights.
   struct Tile {
     int tx{}, ty{}, band{};
     std::array<Column, kSide * kSide> columns{};

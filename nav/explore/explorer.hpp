@@ -10,6 +10,7 @@
 
 namespace adit::nav {
 
+/// Parameters of Explorer.
 struct ExploreParams {
   double range{12.0};  ///< Space farther from the lidar does not count as seen, m, (0, 60].
   /// Frontiers with less unseen volume behind them are left to the end, m3, [0, 100]. Chosen with
@@ -35,6 +36,7 @@ class GroundView {
   virtual double weight(const Eigen::Vector3d& /*place*/) const { return 1.0; }
 };
 
+/// Progress of an exploration.
 enum class ExploreState : std::uint8_t {
   starting,      ///< No plan was made yet.
   exploring,     ///< On the way to `goal`.
@@ -42,6 +44,7 @@ enum class ExploreState : std::uint8_t {
   done,          ///< Everything that can be reached was seen.
 };
 
+/// Present goal and progress of an exploration.
 struct ExploreStep {
   ExploreState state{ExploreState::starting};
   std::optional<Eigen::Vector3d>

@@ -8,6 +8,7 @@
 
 namespace adit::nav {
 
+/// Parameters of CollisionMonitor.
 struct CollisionMonitorParams {
   NearPointsParams points{};
   TrackerParams tracker{};
@@ -21,8 +22,8 @@ struct CollisionMonitorParams {
   double limit_speed{0.3};
 };
 
-/// The present motion of the robot; without values it is unknown.
-/// From odometry, at the centre of rotation: a car's rear axle.
+/// Present motion of the robot by its odometry, at the centre of rotation: a car's rear axle. Without values
+/// it is unknown.
 struct Driven {
   Twist2 velocity{};
   /// Maximum speed that follows from the commands, m/s.
@@ -49,8 +50,9 @@ class CollisionMonitor {
     limit,      ///< Manual mode: both limit the speed, and neither stops.
     stop_seen,  ///< Manual mode, if the platform file asks for it: an obstacle stops, a stale scan limits.
   };
-  /// `tilted`: the body tilts so far that it may tip over.
+  /// Reason why a velocity was changed. `tilted`: the body tilts so far that it may tip over.
   enum class Cause : std::uint8_t { none, slowed, stopped, stale, tilted };
+  /// Result of a check: the velocity that is safe.
   struct Verdict {
     Twist2 velocity{};
     Cause cause{Cause::none};  ///< `stopped`: no motion is possible; under Policy::limit it continues slowly.

@@ -12,9 +12,9 @@
 
 namespace adit::nav {
 
-/// The lidar may see nothing at shorter range, m, [0, 1].
+/// Parameters of NearPoints.
 struct NearPointsParams {
-  double shortest{0.35};
+  double shortest{0.35};         ///< The lidar may see nothing at shorter range, m, [0, 1].
   double memory{10.0};           ///< Lifetime of a place that newer scans cannot show, s, [0, 60].
   double noise{0.02};            ///< Standard deviation of a return's range, m, [0, 0.2].
   double max_uncertainty{0.05};  ///< Upper limit of the position uncertainty, m, [0, 0.2].

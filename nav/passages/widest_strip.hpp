@@ -9,9 +9,8 @@
 namespace adit::nav {
 
 /// The straight path through a gap: the centre line of the widest free strip.
-/// A pose on the line, about in the middle of the gap, heading through.
 struct WidestStrip {
-  Pose2 line{};
+  Pose2 line{};    ///< A pose on the line, about in the middle of the gap, heading through.
   double room{0};  ///< Width of the strip, m.
 };
 

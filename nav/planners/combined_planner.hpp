@@ -7,9 +7,9 @@
 
 namespace adit::nav {
 
-/// Space with less clearance beside the body than this is tight, m, [0, 1].
+/// Parameters of CombinedPlanner.
 struct CombinedPlannerParams {
-  double clearance{0.25};
+  double clearance{0.25};  ///< Space with less clearance beside the body than this is tight, m, [0, 1].
   double ahead{2.0};  ///< Distance that is checked along the route, beyond the braking distance, m, [0.5, 4].
   double hysteresis{1.0};  ///< Distance after the last tight place at which open space begins, m, [0, 4].
 };

@@ -9,9 +9,9 @@
 
 namespace adit::nav {
 
-/// Speed with an obstacle at the footprint, m/s, (0, 2].
+/// Parameters of path_speed().
 struct PathSpeedParams {
-  double caution{0.3};
+  double caution{0.3};       ///< Speed with an obstacle at the footprint, m/s, (0, 2].
   double caution_gain{2.4};  ///< Additional speed per clearance, 1/s, [0, 10].
   double blind{0.6};         ///< Speed where the path enters hidden space, m/s, (0, 5].
   /// Fraction of the platform's acceleration used to brake to these speeds in time, (0, 1].

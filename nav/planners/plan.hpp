@@ -12,6 +12,7 @@ namespace adit::nav {
 
 /// The local planner's target.
 struct Target {
+  /// What the robot is to reach.
   enum class Kind : std::uint8_t {
     none,       ///< No target: the robot stops.
     goal,       ///< A point.

@@ -4,6 +4,7 @@
 
 namespace adit::nav {
 
+/// Parameters of ProgressChecker.
 struct ProgressParams {
   double gain{0.5};   ///< Minimum progress, m, [0.1, 5].
   double time{45.0};  ///< Maximum time for it, s, [1, 600].

@@ -38,7 +38,7 @@ inline double half_extent(double length, double width, double yaw, const Eigen::
   return (std::fabs(std::sin(turn)) * length + std::fabs(std::cos(turn)) * width) / 2;
 }
 
-/// The strip of ground that a robot needs for its way ahead. m
+/// The strip of ground that a robot needs for its way ahead, m.
 struct Corridor {
   std::vector<Eigen::Vector2d> route{};  ///< Two corners or more.
   double width{};

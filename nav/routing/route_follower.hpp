@@ -8,6 +8,7 @@
 
 namespace adit::nav {
 
+/// Parameters of RouteFollower.
 struct RouteFollowerParams {
   /// Replaces the route only if the new cost is below this fraction of the current one, (0, 1].
   double switch_ratio{0.85};
@@ -25,6 +26,7 @@ struct RouteFollowerParams {
 
 /// The local goal of a robot that follows a route.
 struct RouteStep {
+  /// State of the route.
   enum class State : std::uint8_t {
     straight,     ///< No route yet: heads straight for the goal.
     along,        ///< Heads for `target`, a point of the route.

@@ -3,6 +3,7 @@
 
 namespace adit::nav {
 
+/// Parameters of the global planner and its map.
 struct RouteParams {
   double range{20.0};          ///< Maximum range of the scan points used, m, [2, 60].
   double comfort{0.4};         ///< Inflation beyond the body where there is room, m, [0, 0.5].

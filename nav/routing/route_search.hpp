@@ -12,8 +12,7 @@
 
 namespace adit::nav {
 
-/// A start or goal on the map.
-/// m
+/// A start or goal on the map, m.
 struct RouteEnd {
   Eigen::Vector3d place{0, 0, 0};
   int tile{-1};           ///< -1: in unknown space without a tile.

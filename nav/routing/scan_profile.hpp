@@ -35,8 +35,7 @@ class ScanProfile {
   struct Return {
     float range, x, y, z;
   };
-  /// A piece of ground between two ranges.
-  /// ray_z: height of the ray at `to`, m.
+  /// A piece of ground between two ranges. `ray_z`: height of the ray at `to`, m.
   struct Piece {
     float from, to, z_from, z_to, ray_z;
   };

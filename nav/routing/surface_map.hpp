@@ -13,8 +13,7 @@
 
 namespace adit::nav {
 
-/// A place that was found blocked although the map shows it as free.
-/// m
+/// A place that was found blocked although the map shows it as free, m.
 struct BlockedPlace {
   double x, y, z;
   double radius;  ///< m

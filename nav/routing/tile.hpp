@@ -19,9 +19,8 @@ inline constexpr float kFloorSeparation = 1.5f;
 inline constexpr float kUnreached = std::numeric_limits<float>::infinity();
 
 /// One cell of one floor.
-/// Height of the ground, m.
 struct GroundCell {
-  float z{0};
+  float z{0};                       ///< Height of the ground, m.
   std::int8_t evidence{0};          ///< Of an obstacle; rises with each hit, falls with each ray through it.
   std::uint8_t obstacle_height{0};  ///< Height of the obstacle above the ground, kObstacleHeightUnit.
   bool known : 1 {false};

@@ -11,12 +11,12 @@
 
 namespace adit::nav {
 
-/// Free height required above and below the body, m, [0, 1].
+/// Parameters of AirMap.
 struct AirMapParams {
-  double margin{0.12};
-  double reach{5.0};   ///< Ignores returns farther from the robot, m, [1, 6].
-  double own{0.03};    ///< Returns within this distance of the footprint belong to the robot, m, [0, 0.5].
-  double memory{0.7};  ///< Keeps a cell for this long when the lidar should see it again, s, [0.1, 10].
+  double margin{0.12};  ///< Free height required above and below the body, m, [0, 1].
+  double reach{5.0};    ///< Ignores returns farther from the robot, m, [1, 6].
+  double own{0.03};     ///< Returns within this distance of the footprint belong to the robot, m, [0, 0.5].
+  double memory{0.7};   ///< Keeps a cell for this long when the lidar should see it again, s, [0.1, 10].
   /// The same for a cell that is above or below the rays or too near, s, [0.1, 60].
   double hidden_memory{8.0};
   double shortest{0.4};  ///< The lidar may see nothing at shorter range, m, [0, 1].

@@ -23,15 +23,15 @@ class Drops {
  public:
   /// Cells with a higher drop probability block; cells with a lower one slow the robot.
   static constexpr float kBlocks = 0.9f;
-  /// In the ground's window.
+  /// A cell of the ground with the probability of a drop.
   struct Cell {
-    std::uint32_t index;
-    float probability;  ///< [0.5, 1)
+    std::uint32_t index;  ///< In the ground's window.
+    float probability;    ///< [0.5, 1)
   };
 
-  /// Minimum depth of a drop, m.
+  /// Sizes of drops, of the sensor's view and of the body.
   struct Geometry {
-    float depth;
+    float depth;      ///< Minimum depth of a drop, m.
     float sure;       ///< Range up to which a ray that passes the ground's height shows an edge, m.
     float half_body;  ///< Half the body's length, m; shorter gaps are passable.
   };
@@ -51,7 +51,8 @@ class Drops {
   std::span<const Cell> cells() const { return cells_; }
 
  private:
-  /// `doubtful`: a missing return, or a return below measured ground, as a mirrored ray gives.
+  /// Evidence that a ray gives for a drop. `doubtful`: a missing return, or a return below measured ground,
+  /// as a mirrored ray gives.
   enum class Cue { none, ray, doubtful };
   /// Votes for a drop where a ray passed the ground's height. Returns the cue that the ray gives, or none.
   Cue pass(const View& view, const Eigen::Vector3f& ray, float end, Cue cue, const GroundGrid& ground);

@@ -12,12 +12,12 @@
 
 namespace adit::nav {
 
-/// Standard deviation of the body's attitude, rad.
+/// Parameters of GroundGrid.
 struct GroundParams {
-  float sigma_tilt{0.035f};
-  float slope{0.35f};  ///< Maximum ground slope, rise per run, [0, 1.5].
-  float rise{0.06f};   ///< Maximum rise from one cell to the next, m, [0.01, 0.5].
-  float drop{0.2f};    ///< Maximum fall of the ground, m, [0.05, 2].
+  float sigma_tilt{0.035f};  ///< Standard deviation of the body's attitude, rad.
+  float slope{0.35f};        ///< Maximum ground slope, rise per run, [0, 1.5].
+  float rise{0.06f};         ///< Maximum rise from one cell to the next, m, [0.01, 0.5].
+  float drop{0.2f};          ///< Maximum fall of the ground, m, [0.05, 2].
   /// Up to this range rays are steep and dense enough to distinguish an edge from a ramp, m; farther away
   /// ground may fall by the slope from one ring to the next.
   float sure{2.3f};
@@ -49,8 +49,7 @@ class GroundGrid {
   static constexpr float kCell = 0.1f;         ///< m
   static constexpr std::uint8_t kNever = 200;  ///< Gap of a cell without a measured cell on the path to it.
 
-  /// Correction of a scan's heights relative to the map, about the robot's place.
-  /// m
+  /// Correction of a scan's heights relative to the map, about the robot's place, m.
   struct Offset {
     float height{0};
     Eigen::Vector2f gradient{0, 0};  ///< Rise per metre along x and y.

@@ -10,6 +10,7 @@
 
 namespace adit::nav {
 
+/// Parameters of Surface.
 struct SurfaceParams {
   float slope{0.35f};         ///< Maximum slope, rise per run, (0, 1.5].
   float step{0.08f};          ///< Maximum step height, m, (0, 1].

@@ -3,9 +3,9 @@
 
 namespace adit::nav {
 
-/// Radius of the terrain map around the robot, m, [1, 20].
+/// Parameters of TerrainMap.
 struct TerrainParams {
-  double range{4.5};
+  double range{4.5};           ///< Radius of the terrain map around the robot, m, [1, 20].
   double memory{4.0};          ///< Lifetime of a hidden obstacle, s, (0, 60].
   double ground_memory{60.0};  ///< Lifetime of a ground height, s, (0, 600].
   double drop_memory{20.0};    ///< Lifetime of a drop that could be seen and is not, s, (0, 600].

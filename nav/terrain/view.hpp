@@ -9,11 +9,10 @@
 namespace adit::nav {
 
 /// Viewpoint of a scan: the pose of the lidar, which is mounted upright on the body.
-/// Rotation from base_link to the map.
 struct View {
-  Eigen::Matrix3f turn{Eigen::Matrix3f::Identity()};
-  Eigen::Vector3f sensor{0, 0, 0};  ///< Lidar in the map, m.
-  Eigen::Vector3f base{0, 0, 0};    ///< base_link in the map, m.
+  Eigen::Matrix3f turn{Eigen::Matrix3f::Identity()};  ///< Rotation from base_link to the map.
+  Eigen::Vector3f sensor{0, 0, 0};                    ///< Lidar in the map, m.
+  Eigen::Vector3f base{0, 0, 0};                      ///< base_link in the map, m.
 
   View() = default;
   View(const Pose3& body, double lidar_height)

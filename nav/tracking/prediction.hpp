@@ -10,9 +10,9 @@
 
 namespace adit::nav {
 
-/// Prediction horizon, s, [0, 5].
+/// Parameters of predict() and speed_beside().
 struct PredictionParams {
-  double horizon{2.5};
+  double horizon{2.5};     ///< Prediction horizon, s, [0, 5].
   double sure{1.2};        ///< Predicted places block up to this time and only cost later, s, [0, horizon].
   double slack{0.4};       ///< Uncertainty of the robot's own progress along its path, m, [0, 2].
   double thickness{0.25};  ///< Depth added behind the visible side of a mover, m, [0, 1].

@@ -11,10 +11,10 @@
 
 namespace adit::nav {
 
-/// Tracks movers up to this distance from the lidar, m, [1, 30].
+/// Parameters of Tracker.
 struct TrackerParams {
-  double reach{8.0};
-  double age{0.45};  ///< Compares the scan with the free space of a scan this much older, s, [0.1, 0.7].
+  double reach{8.0};  ///< Tracks movers up to this distance from the lidar, m, [1, 30].
+  double age{0.45};   ///< Compares the scan with the free space of a scan this much older, s, [0.1, 0.7].
   /// Minimum age of a second reference, at half of `age`, for movers that turn about, s, [0.05, age].
   double youngest{0.2};
   double beyond{0.15};  ///< A ray must pass a place by this much to show that it was free, m, [0.05, 1].
@@ -31,9 +31,8 @@ struct TrackerParams {
 };
 
 /// A person or robot that moves, or moved a moment ago. Odometry frame.
-/// Maximum number of points.
 struct Mover {
-  static constexpr std::size_t kMax = 24;
+  static constexpr std::size_t kMax = 24;      ///< Maximum number of points.
   bool moves{false};                           ///< False: it stopped or is gone, and its velocity is zero.
   Eigen::Vector2f position{0, 0};              ///< Centre of its visible part, m.
   Eigen::Vector2f velocity{0, 0};              ///< m/s

@@ -16,7 +16,7 @@
 
 namespace adit::perception {
 
-/// What became of the points of a scan.
+/// Numbers of a scan's points, by what became of them.
 struct ScanCounts {
   std::size_t used{};
   std::size_t not_finite{};    ///< No return.
@@ -24,7 +24,7 @@ struct ScanCounts {
   std::size_t own_body{};
 };
 
-/// What is wrong with a scan that can be used all the same.
+/// A problem of a scan that can be used all the same.
 struct ScanWarning {
   const char* code{};  ///< Of the notification.
   Reason reason{};

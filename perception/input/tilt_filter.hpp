@@ -12,6 +12,7 @@
 
 namespace adit::perception {
 
+/// Parameters of TiltFilter.
 struct TiltFilterParams {
   double gain{0.3};        ///< Of the accelerometer, 1/s, (0, 10].
   double bias_gain{0.02};  ///< Of the gyro's bias, 1/s2, [0, gain^2 / 2].

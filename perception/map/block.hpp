@@ -6,7 +6,7 @@
 
 namespace adit::perception {
 
-/// What is known of a place.
+/// State of a voxel.
 enum class Voxel : std::uint8_t { unknown, free, occupied };
 
 /// Indices of a cube of 0.8 m: it covers [0.8 i, 0.8 (i + 1)) along each axis of its submap, m.

@@ -11,7 +11,7 @@
 
 namespace adit::perception {
 
-/// What one scan says of a block of 8 x 8 x 8 voxels. Layer z has the bit x + 8 y.
+/// A block of 8 x 8 x 8 voxels as one scan shows it. Layer z has the bit x + 8 y.
 struct ScanBlock {
   BlockIndex index{};
   std::array<std::uint64_t, 8> free{};  ///< A ray passed; the voxels in `hit` count as hit.
@@ -22,6 +22,7 @@ struct ScanBlock {
 /// reused from scan to scan.
 class ScanMasks {
  public:
+  /// The rays of one scan.
   struct Rays {
     Eigen::Vector3f origin{Eigen::Vector3f::Zero()};  ///< m
     std::span<const Eigen::Vector3f> points{};        ///< In the origin's frame, m.

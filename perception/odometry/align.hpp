@@ -9,7 +9,7 @@
 
 namespace adit::perception {
 
-/// How a cloud is laid onto planes when nothing is known but a guess.
+/// Parameters of align(), which lays a cloud onto planes from a guess alone.
 struct AlignParams {
   double range_noise{0.02};     ///< Standard deviation of a range, m, (0, 0.5].
   double search_distance{0.0};  ///< Poses so far from the guess are tried, too, horizontally, m, [0, 3].
@@ -21,7 +21,7 @@ struct AlignParams {
 /// Less overlap says that a scan belongs elsewhere; scans of the same kind and a target of all places around.
 inline constexpr double kAlignOverlap = 0.65;
 
-/// Where a cloud lies in another one's frame, and how well it fits there.
+/// Pose of a cloud in another one's frame, and how well it fits there.
 struct Alignment {
   Pose3 pose{};  ///< T_target_source.
   /// Of the pose, in translation (target axes) and rotation (source axes, right-perturbed).

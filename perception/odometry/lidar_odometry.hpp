@@ -17,6 +17,7 @@
 
 namespace adit::perception {
 
+/// Parameters of LidarOdometry.
 struct LidarOdometryParams {
   MotionParams motion{};
   RegistrationParams registration{};

@@ -13,8 +13,8 @@
 
 namespace adit::perception {
 
-/// How a body moves, and how good its sensors of motion are. Defaults: a good MEMS sensor on a vibrating
-/// drive, and worn wheels.
+/// Parameters of MotionFilter: the body's drive, and the errors of its sensors of motion. Defaults: a good
+/// MEMS sensor on a vibrating drive, and worn wheels.
 struct MotionParams {
   bool has_imu{true};
   bool has_wheels{true};                  ///< Or legs, or another source of BodyMotion.

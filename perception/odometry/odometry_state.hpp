@@ -9,11 +9,11 @@
 
 namespace adit::perception {
 
-/// How well the lidar determines a direction.
+/// Degree to which the lidar determines a direction.
 enum class Observability : std::uint8_t { none, weak, strong };
 
-/// How well the lidar determines the three directions of translation and the three axes of rotation, in the
-/// frame of the odometry.
+/// Degrees to which the lidar determines the three directions of translation and the three axes of rotation,
+/// in the frame of the odometry.
 struct Localizability {
   Eigen::Matrix3d axes_t{Eigen::Matrix3d::Identity()};  ///< Columns: directions, the least known first.
   Eigen::Matrix3d axes_r{Eigen::Matrix3d::Identity()};  ///< Columns: axes of rotation.
@@ -30,7 +30,7 @@ struct Localizability {
   }
 };
 
-/// What the odometry says after a sweep.
+/// Result of the odometry after a sweep.
 struct OdometryState {
   std::uint64_t stamp{};                                    ///< End of the sweep, driver's clock, ns.
   Pose3 pose{};                                             ///< T_odom_base.

@@ -11,7 +11,7 @@
 
 namespace adit::perception {
 
-/// How a cloud is laid onto planes.
+/// Parameters of Registration.
 struct RegistrationParams {
   double range_noise{0.02};     ///< Standard deviation of a range, m, (0, 0.5].
   double bearing_noise{0.003};  ///< Standard deviation of a bearing, with mounting and timing, rad, [0, 0.1].
@@ -22,7 +22,7 @@ struct RegistrationParams {
   ObservabilityParams observability{};
 };
 
-/// A cloud laid onto planes.
+/// Result of a registration: the pose of a cloud on the map.
 struct Registered {
   Pose3 pose{};
   /// Of the pose, in translation (target axes) and rotation (body axes, right-perturbed). Directions that the

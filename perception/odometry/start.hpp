@@ -10,7 +10,7 @@
 
 namespace adit::perception {
 
-/// What the sensors of motion say before the odometry begins.
+/// Attitude and gyro bias before the odometry begins, by the sensors of motion.
 struct StartAttitude {
   Eigen::Quaterniond level_from_base{Eigen::Quaterniond::Identity()};  ///< Roll and pitch.
   Eigen::Vector3d gyro_bias{0, 0, 0};                                  ///< rad/s

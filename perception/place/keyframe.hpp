@@ -10,7 +10,7 @@
 
 namespace adit::perception {
 
-/// What the lidar saw from one place, thinned.
+/// A thinned cloud that the lidar saw from one place.
 struct Keyframe {
   /// Enough that a robot which only began to move finds planes in one keyframe.
   static constexpr std::size_t kMaxPoints = 6000;

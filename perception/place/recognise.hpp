@@ -7,7 +7,7 @@
 
 namespace adit::perception {
 
-/// How much a place may differ from where a robot believes that it is.
+/// Limits of the difference between a place and where the robot believes that it is.
 struct RecogniseParams {
   double max_shift{0.5};                ///< In m.
   double max_turn{0.175};               ///< 10 degrees, in rad.

@@ -86,6 +86,7 @@ using FindStored = std::function<std::optional<CoarseBlock>(const SubmapKey&, co
 Result<MapPiece> decode(std::span<const std::uint8_t> bytes, const FindStored& find_stored = {});
 Result<SubmapPoses> decode_poses(std::span<const std::uint8_t> bytes);
 
+/// A piece in bytes.
 struct PackedPiece {
   std::vector<std::uint8_t> bytes{};
   std::size_t count{};  ///< How many of the blocks are inside, the first ones.

@@ -29,6 +29,7 @@ struct StoredSubmap {
 
 /// Newest poses of all submaps, and which submaps stations have complete.
 struct StoredPlaces {
+  /// A station and the submaps that it has complete.
   struct Peer {
     std::array<std::uint8_t, 16> id{};
     std::uint32_t start{};             ///< Of the station's program: a new one has nothing.

@@ -11,6 +11,7 @@ namespace adit::perception {
 /// that follows the last cloud (as in LOCUS 2.0, Reinke et al. 2022).
 class Thinner {
  public:
+  /// Number of points, edges of the voxels and ranges.
   struct Params {
     std::size_t wanted{1500};  ///< Points that are to remain.
     float min_edge{0.1f};      ///< m

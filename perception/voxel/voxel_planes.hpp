@@ -11,7 +11,8 @@
 
 namespace adit::perception {
 
-/// What the points of one voxel lie on: a plane, or an upright line such as a pole or the edge of a door.
+/// The surface on which the points of one voxel lie: a plane, or an upright line such as a pole or the edge
+/// of a door.
 struct PlanePatch {
   Eigen::Vector3d centre;  ///< Mean of the points, m.
   Eigen::Vector3f normal;  ///< Unit vector across it; its sign has no meaning.
@@ -32,6 +33,7 @@ struct PlanePatch {
 class VoxelPlanes {
  public:
   static constexpr int kMaxLevels = 5;
+  /// Sizes of the voxels, and what counts as a plane or a line.
   struct Params {
     float finest{0.25f};         ///< Edge of the smallest voxels, m; each further level doubles it.
     int levels{3};               ///< Sizes of voxels, [1, kMaxLevels].

@@ -15,6 +15,7 @@
 
 namespace adit::nav {
 
+/// Parameters of FalcoPlanner.
 struct FalcoPlannerParams {
   PathTreeParams tree{};
   double roomy_margin{0.5};  ///< Clearance beside the footprint where there is plenty of room, m, [0, 1].
@@ -101,12 +102,12 @@ class FalcoPlanner final : public Planner {
  private:
   using Option = PlannerLibrary::Option;
 
-  /// Infinite for a direction, m.
+  /// The target as seen from the robot.
   struct Goal {
-    double distance;
-    double bearing;  ///< Body frame, rad.
-    double spread;   ///< Degrees.
-    int headings;    ///< Number of headings to each side of the bearing.
+    double distance;  ///< Infinite for a direction, m.
+    double bearing;   ///< Body frame, rad.
+    double spread;    ///< Degrees.
+    int headings;     ///< Number of headings to each side of the bearing.
     /// Straight ahead and straight back are candidates too; `bearing` is a whole number of degrees.
     bool own_headings;
     bool backwards;  ///< The target asks for driving backwards.
@@ -118,6 +119,7 @@ class FalcoPlanner final : public Planner {
     int turn{0};
     float weight{0};
   };
+  /// A group of a trajectory library at one heading.
   struct Choice {
     const Option* option{nullptr};
     int stage{};
@@ -126,9 +128,9 @@ class FalcoPlanner final : public Planner {
     int group{};
     float ease{1};  ///< Weight of the ground.
   };
-  /// Angle from the goal's bearing, degrees.
+  /// An occupied polar cell.
   struct Occupied {
-    std::uint16_t ring, angle;
+    std::uint16_t ring, angle;  ///< `angle`: from the goal's bearing, degrees.
   };
   /// A set of polar cells: bits while it is filled, then a list by ring, nearest first.
   struct Cells {

@@ -10,6 +10,7 @@
 
 namespace adit::nav {
 
+/// Parameters of HybridAStarPlanner.
 struct HybridAStarPlannerParams {
   HybridAStarSearchParams search{};
   double tolerance{0.25};     ///< Default goal tolerance, m, [0.02, 2].

@@ -12,6 +12,7 @@
 
 namespace adit::nav {
 
+/// Parameters of HybridAStarSearch.
 struct HybridAStarSearchParams {
   MotionPrimitiveParams motions{};
   double margin{0.06};  ///< Clearance around the body, m, [0.02, 0.5].
@@ -30,9 +31,8 @@ struct HybridAStarSearchParams {
 };
 
 /// Start and target of a search; frame of the fields, m.
-/// Index of the present curvature; -1: the robot is so slow that it can start with any.
 struct HybridAStarTask {
-  int level{-1};
+  int level{-1};     ///< Index of the present curvature; -1: the robot is so slow that it can start with any.
   int direction{0};  ///< Present driving direction, 1 or -1; 0: stationary.
   Eigen::Vector2d target{0, 0};
   bool goal{true};                 ///< The target is a place to reach; else a direction.
@@ -47,6 +47,7 @@ struct HybridAStarTask {
 /// A path: its start, kPoses poses of each motion, and the part through a gap at the same spacing.
 struct HybridAStarPath {
   static constexpr std::size_t kMax = 256;
+  /// A pose of the path.
   struct Spot {
     Pose2 pose{};
     float cost{};             ///< From the start, m.
@@ -56,7 +57,7 @@ struct HybridAStarPath {
   std::size_t count{0};
   int direction_changes{0};
   bool tight{false};     ///< Keeps only the tight margin.
-  bool through{false};   ///< Leads through a gap, see HybridAStarTask::gate.
+  bool through{false};   ///< Leads through a gap, see HybridAStarTask::passage.
   bool complete{false};  ///< Ends at the goal, or at the reach of the search.
   double left{0};        ///< Cost to go from its end to the target, m.
 

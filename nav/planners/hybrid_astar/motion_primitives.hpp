@@ -9,24 +9,23 @@
 namespace adit::nav {
 
 /// Parameters of the motion primitives.
-/// Length of one motion, m, [0.15, 0.5].
 struct MotionPrimitiveParams {
-  double step{0.25};
+  double step{0.25};      ///< Length of one motion, m, [0.15, 0.5].
   double curvature{1.5};  ///< Maximum curvature of a robot that can turn on the spot, rad/m, (0, 4].
   /// Fraction of a car's maximum curvature that is used, so that it can correct errors, (0, 1].
   double car_share{0.92};
 };
 
-/// MotionPrimitive primitives for robots that may not be able to turn on the spot: short motions between
-/// curvatures, forwards and backwards, from which a search builds paths. The curvature changes by at most one
-/// level per motion, linearly along the path (a clothoid), because wheels do not steer instantly. While the
-/// robot stops to change direction, they may be steered to any level. Poses are those of a car's rear axle,
-/// or of base_link for other drives.
+/// Motion primitives for robots that may not be able to turn on the spot: short motions between curvatures,
+/// forwards and backwards, from which a search builds paths. The curvature changes by at most one level per
+/// motion, linearly along the path (a clothoid), because wheels do not steer instantly. While the robot stops
+/// to change direction, they may be steered to any level. Poses are those of a car's rear axle, or of
+/// base_link for other drives.
 class MotionPrimitives {
  public:
   static constexpr int kLevels = 7;  ///< Number of curvatures; the middle one is straight.
   static constexpr int kPoses = 5;   ///< Per motion, evenly spaced; the last one is its end.
-  /// From the motion's start.
+  /// The poses of one motion, relative to its start.
   struct MotionPrimitive {
     std::array<Pose2, kPoses> poses{};
   };

@@ -12,7 +12,7 @@
 
 namespace adit::perception {
 
-/// What stands in the way of a robot, above the ground of its floor, m.
+/// Heights of obstacles above the ground of their floor, m.
 struct HeightBand {
   double low{0.2};
   double high{1.2};

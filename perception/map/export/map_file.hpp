@@ -16,6 +16,7 @@ namespace adit::perception {
 Result<void> write_file_whole(const std::filesystem::path& file,
                               const std::function<Result<void>(std::ostream&)>& write);
 
+/// Options of save_map().
 struct SaveOptions {
   std::size_t floor{0};  ///< Of a .pgm file.
 };
