@@ -26,7 +26,7 @@ Result<void> FindingDesk::hear(const std::string& robot, std::span<const std::ui
   if (piece->robot != robot) return {Reason::malformed, "findings of another robot"};
   if (!robots_.contains(robot) && robots_.size() >= kRobots)
     return {Reason::queue_full, "no room for one more robot's findings"};
-  robots_[robot] = {piece->kept, piece->overflowed};
+  robots_[robot] = {piece->stored, piece->overflowed};
   bool fits = true;
   Waiting waiting{{}, std::move(stored)};
   for (findings::Finding& finding : piece->findings) {
@@ -36,7 +36,7 @@ Result<void> FindingDesk::hear(const std::string& robot, std::span<const std::ui
       fits = false;
       continue;
     }
-    if (!finding_store_.kept(key)) waiting.keys.insert(key);
+    if (!finding_store_.is_stored(key)) waiting.keys.insert(key);
     if (is_new) outputs_.found(finding_store_.all().at(key));
   }
   if (!fits) {

@@ -32,8 +32,9 @@ std::string got(const Value& value) {
   return value.quoted ? "the text \"" + text + "\"" : "'" + text + "'";
 }
 
+/// Parses a number that makes up all of the text.
 template <class T>
-bool parse_whole(const std::string& text, T& out) {
+bool parse_complete(const std::string& text, T& out) {
   const char* begin = text.data();
   const char* end = begin + text.size();
   const auto [at, error] = std::from_chars(begin, end, out);
@@ -41,7 +42,7 @@ bool parse_whole(const std::string& text, T& out) {
 }
 
 bool parse_number(const Value& value, double& out) {
-  return value.kind == Value::Kind::scalar && !value.quoted && parse_whole(value.scalar, out) &&
+  return value.kind == Value::Kind::scalar && !value.quoted && parse_complete(value.scalar, out) &&
          std::isfinite(out);
 }
 
@@ -132,7 +133,7 @@ std::int64_t Node::as_integer(std::int64_t min, std::int64_t max) const {
   std::int64_t v = 0;
   const std::string expected = "expected a whole number in [" + std::to_string(min) + ", " +
                                std::to_string(max) + "], got " + got(*value_);
-  if (value_->kind != Value::Kind::scalar || value_->quoted || !parse_whole(value_->scalar, v)) {
+  if (value_->kind != Value::Kind::scalar || value_->quoted || !parse_complete(value_->scalar, v)) {
     fail(Reason::wrong_type, expected);
     return min;
   }

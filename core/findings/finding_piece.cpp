@@ -23,7 +23,7 @@ std::size_t encoded_size(const Finding& f) {
 
 store::Bytes encode(const FindingPiece& piece) {
   store::Packer out;
-  out.put(kVersion).text(piece.robot).put(piece.kept).put(piece.overflowed);
+  out.put(kVersion).text(piece.robot).put(piece.stored).put(piece.overflowed);
   out.put(static_cast<std::uint16_t>(piece.findings.size()));
   for (const Finding& f : piece.findings) {
     out.put(f.key.id).text(f.kind).put(f.importance);
@@ -44,7 +44,7 @@ Result<FindingPiece> decode_piece(std::span<const std::uint8_t> bytes) {
   store::Unpacker in(content.subspan(1));
   FindingPiece piece;
   piece.robot = in.text(kRobot);
-  piece.kept = in.get<std::uint32_t>();
+  piece.stored = in.get<std::uint32_t>();
   piece.overflowed = in.get<std::uint32_t>();
   const std::size_t count = in.count(FindingPiece::kMaxFindings);
   if (!in.good() || count == 0) return malformed("no findings, or too many");

@@ -16,13 +16,13 @@ struct FindingPiece {
   static constexpr std::size_t kMaxFindings = 24;  ///< In one piece.
 
   std::string robot{};         ///< The findings are all of this robot.
-  std::uint32_t kept{};        ///< Findings that the robot stores.
+  std::uint32_t stored{};      ///< Findings that the robot stores.
   std::uint32_t overflowed{};  ///< Findings dropped or refused for lack of space, since its start.
   std::vector<Finding> findings{};
   bool operator==(const FindingPiece&) const = default;
 };
 
-/// Encodes a piece of 1 to kMaxFindings valid findings of its robot: version, robot, kept, overflowed, the
+/// Encodes a piece of 1 to kMaxFindings valid findings of its robot: version, robot, stored, overflowed, the
 /// findings, and a checksum (CRC-32C), so that a damaged piece is refused.
 store::Bytes encode(const FindingPiece& piece);
 /// Bytes of an encoded piece without its findings.

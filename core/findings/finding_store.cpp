@@ -123,7 +123,7 @@ bool FindingStore::put(Finding finding) {
   const Key key = finding.key;
   all_.emplace(key, std::move(finding));
   if (!disk_) {
-    outputs_.kept(key);
+    outputs_.stored(key);
     return true;
   }
   dropped_.erase(key);
@@ -229,7 +229,7 @@ void FindingStore::written(const Batch& batch) {
     failing_ = failing;
     outputs_.failing(failing, failing ? batch.error : "findings are stored again");
   }
-  for (const Key& key : saved) outputs_.kept(key);
+  for (const Key& key : saved) outputs_.stored(key);
   // When nothing of the batch could be written, the retry timer decides.
   if (batch.failed.size() < batch.save.size() + batch.remove.size()) write();
 }

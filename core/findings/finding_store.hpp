@@ -35,7 +35,7 @@ struct LoadReport {
 class FindingStore {
  public:
   struct Outputs {
-    std::function<void(const Key&)> kept{};  ///< Called when the finding is on disk.
+    std::function<void(const Key&)> stored{};  ///< Called when the finding is on disk.
     /// Called when the disk begins to fail (with the reason), or works again.
     std::function<void(bool failing, const std::string& text)> failing{};
   };
@@ -62,7 +62,7 @@ class FindingStore {
   const std::map<Key, Finding>& all() const { return all_; }
   bool full() const { return all_.size() >= params_.max_findings; }
   /// Whether the finding is on disk.
-  bool kept(const Key& key) const { return all_.contains(key) && !unsaved_.contains(key); }
+  bool is_stored(const Key& key) const { return all_.contains(key) && !unsaved_.contains(key); }
 
  private:
   struct Batch;

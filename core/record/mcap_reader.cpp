@@ -115,7 +115,7 @@ class Reading {
   void chunk(std::uint64_t start) {
     ++report_.chunks;
     const auto records = unpacked();
-    if (!records || !whole(*records)) {
+    if (!records || !is_complete(*records)) {
       ++report_.bad_chunks;
       wrong(start, "damaged chunk, left out");
       return;
@@ -143,7 +143,7 @@ class Reading {
   }
 
   /// Whether the bytes consist of complete records.
-  static bool whole(ByteSpan records) {
+  static bool is_complete(ByteSpan records) {
     return each(records, [](Opcode, ByteSpan) {});
   }
   template <class F>

@@ -124,7 +124,7 @@ void Recorder::run() {
       last_of = released_;
     }
     written_ = 0;
-    const bool kept = batch.empty() || write(batch);
+    const bool all_written = batch.empty() || write(batch);
     std::uint64_t all = 0;
     for (McapUnpacker entries(batch); entries.left() > 0; ++all) {
       entries.take(kEntryHead - 4);
@@ -133,8 +133,8 @@ void Recorder::run() {
     batch.clear();
     const std::lock_guard lock(mutex_);
     for (const auto& [id, known] : last_of) released_.erase(id);
-    counters_.recorded += kept ? all : written_;
-    counters_.dropped += kept ? 0 : all - written_;
+    counters_.recorded += all_written ? all : written_;
+    counters_.dropped += all_written ? 0 : all - written_;
   }
   // An error costs only the summary: the file is readable without it.
   if (file_) (void)file_->writer.close();
@@ -173,7 +173,8 @@ bool Recorder::open() {
   auto output = ring_.next();
   if (!output) return lost(output.error());
   file_ = std::make_unique<File>(std::move(*output), params_);
-  if (const auto told = file_->writer.add_metadata("adit", params_.about); !told) return lost(told.error());
+  if (const auto added = file_->writer.add_metadata("adit", params_.about); !added)
+    return lost(added.error());
   troubled_ = false;
   const std::lock_guard lock(mutex_);
   ++counters_.files;

@@ -13,7 +13,7 @@ struct Colour {
 
 enum class Align { left, centre, right };
 
-/// A cairo image with the few strokes that pictures need. Pixels, y down. Errors are kept by cairo until
+/// A cairo image with the few strokes that pictures need. Pixels, y down. cairo stores errors until
 /// save().
 class Sketch {
  public:

@@ -99,12 +99,12 @@ SectionList unpack_sections(std::span<const std::uint8_t> bytes) {
   for (std::size_t i = 0; i < entries->size(); ++i) {
     const Entry& entry = (*entries)[i];
     Section section{entry.tag, entry.version, {}};
-    const std::size_t whole = std::size_t{entry.size} + kSectionChecksum;
-    const auto part = bytes.first(std::min(bytes.size(), whole));
+    const std::size_t length = std::size_t{entry.size} + kSectionChecksum;
+    const auto part = bytes.first(std::min(bytes.size(), length));
     bytes = bytes.subspan(part.size());
     const bool good =
-        part.size() == whole && Unpacker(part.last(kSectionChecksum)).get<std::uint32_t>() ==
-                                    checksum(i, entry.tag, entry.version, part.first(entry.size));
+        part.size() == length && Unpacker(part.last(kSectionChecksum)).get<std::uint32_t>() ==
+                                     checksum(i, entry.tag, entry.version, part.first(entry.size));
     if (good) section.payload.assign(part.begin(), part.end() - kSectionChecksum);
     (good ? list.good : list.damaged).push_back(std::move(section));
   }

@@ -82,14 +82,14 @@ State decode_envelope(const StateFormat& format, std::span<const std::uint8_t> b
   const auto zero = in.get<std::uint16_t>();
   const std::size_t size = in.get<std::uint32_t>();
   const auto generation = in.get<std::uint64_t>();
-  const std::size_t whole = kHeader + size + kChecksum;
-  if (bytes.size() < whole)
-    return flawed(LoadStatus::torn,
-                  "it ends after " + std::to_string(bytes.size()) + " of " + std::to_string(whole) + " bytes",
-                  bytes);
+  const std::size_t length = kHeader + size + kChecksum;
+  if (bytes.size() < length)
+    return flawed(
+        LoadStatus::torn,
+        "it ends after " + std::to_string(bytes.size()) + " of " + std::to_string(length) + " bytes", bytes);
   const auto payload = bytes.subspan(kHeader, size);
   const auto checksum = Unpacker(bytes.subspan(kHeader + size)).get<std::uint32_t>();
-  if (bytes.size() > whole || zero != 0 || checksum != crc32c(bytes.first(kHeader + size)))
+  if (bytes.size() > length || zero != 0 || checksum != crc32c(bytes.first(kHeader + size)))
     return flawed(LoadStatus::corrupt, "its checksum does not match", bytes);
   if (version > format.version)
     return flawed(LoadStatus::newer, "it is of version " + std::to_string(version) +

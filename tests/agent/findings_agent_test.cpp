@@ -84,7 +84,7 @@ TEST_F(Found, IsSentUntilEveryStationHasIt) {
   EXPECT_EQ(heard[0].robot, "r1");
   ASSERT_EQ(heard[0].findings.size(), 1u);
   EXPECT_EQ(heard[0].findings[0].key.id, 7u);
-  EXPECT_EQ(heard[0].kept, 1u);
+  EXPECT_EQ(heard[0].stored, 1u);
   EXPECT_GT(heard[0].findings[0].stamp, 0u);
   desks[0].stores = true;
   bench->run(20s);

@@ -71,7 +71,7 @@ TEST(FindingPiece, WithBytesBehindItsEndIsRefused) {
 }
 
 TEST(FindingPiece, WithTooLongCountsIsRefused) {
-  // Version, robot, kept and overflowed are before the number of findings.
+  // Version, robot, stored and overflowed are before the number of findings.
   const std::size_t count_at = 1 + 2 + 2 + 4 + 4, kind_at = count_at + 2 + 8;
   const store::Bytes bytes = encode(some_piece());
   for (const std::size_t at : {std::size_t{1}, count_at, kind_at})

@@ -45,10 +45,10 @@ TEST_F(FindingStoreTest, KeepsOverARestart) {
   make();
   EXPECT_TRUE(finding_store->put(some(1)));
   EXPECT_TRUE(finding_store->put(some(2)));
-  EXPECT_FALSE(finding_store->kept({"r1", 1}));
+  EXPECT_FALSE(finding_store->is_stored({"r1", 1}));
   run(20ms);
   EXPECT_THAT(kept, ElementsAre(1, 2));
-  EXPECT_TRUE(finding_store->kept({"r1", 2}));
+  EXPECT_TRUE(finding_store->is_stored({"r1", 2}));
   make();
   EXPECT_EQ(finding_store->all().size(), 2u);
   EXPECT_EQ(finding_store->all().at({"r1", 2}), some(2));
@@ -165,11 +165,11 @@ TEST_F(FindingStoreTest, OneFileThatCannotBeWrittenBlocksNoOther) {
   for (std::uint64_t id = 1; id <= 40; ++id) EXPECT_TRUE(finding_store->put(some(id)));
   run(1500ms);
   EXPECT_EQ(kept.size(), 39u);
-  EXPECT_FALSE(finding_store->kept({"r1", 1}));
+  EXPECT_FALSE(finding_store->is_stored({"r1", 1}));
   EXPECT_THAT(told, ElementsAre("failing"));
   disk->set_refused(file_name({"r1", 1}), false);
   run(2s);
-  EXPECT_TRUE(finding_store->kept({"r1", 1}));
+  EXPECT_TRUE(finding_store->is_stored({"r1", 1}));
   EXPECT_THAT(told, ElementsAre("failing", "works"));
 }
 
@@ -248,10 +248,10 @@ TEST_F(FindingStoreTest, AFullDiskIsToldAndTriedAgain) {
   disk->set_full(true);
   EXPECT_TRUE(finding_store->put(some(1)));
   run(3s);
-  EXPECT_FALSE(finding_store->kept({"r1", 1}));
+  EXPECT_FALSE(finding_store->is_stored({"r1", 1}));
   disk->set_full(false);
   run(2s);
-  EXPECT_TRUE(finding_store->kept({"r1", 1}));
+  EXPECT_TRUE(finding_store->is_stored({"r1", 1}));
   EXPECT_THAT(told, ElementsAre("failing", "works"));
 }
 
@@ -259,7 +259,7 @@ TEST_F(FindingStoreTest, WithoutADiskItIsMemory) {
   disk.reset();
   make();
   EXPECT_TRUE(finding_store->put(some(1)));
-  EXPECT_TRUE(finding_store->kept({"r1", 1}));
+  EXPECT_TRUE(finding_store->is_stored({"r1", 1}));
   EXPECT_THAT(kept, ElementsAre(1));
 }
 

@@ -34,21 +34,21 @@ Bytes rtps(std::uint8_t kind, std::uint32_t writer, std::uint8_t tag = 0) {
 TEST(RtpsPeek, FindsTheWriterBehindOtherSubmessages) {
   const RtpsPeek seen = peek(rtps(0x15, 0x00000103));
   EXPECT_EQ(seen.writer, 0x103U);
-  EXPECT_TRUE(seen.whole);
-  EXPECT_FALSE(peek(rtps(0x16, 0x00000103)).whole);
+  EXPECT_TRUE(seen.complete);
+  EXPECT_FALSE(peek(rtps(0x16, 0x00000103)).complete);
   Bytes two = rtps(0x15, 0x103);
   const Bytes second = rtps(0x15, 0x203);
   two.insert(two.end(), second.begin() + 20, second.end());
   EXPECT_EQ(peek(two).writer, 0x103U);
-  EXPECT_FALSE(peek(two).whole);
+  EXPECT_FALSE(peek(two).complete);
 }
 
 TEST(RtpsPeek, AnythingElseHasNoWriter) {
   EXPECT_FALSE(peek({}).writer);
   EXPECT_FALSE(peek(Bytes(60, 0xff)).writer);
-  Bytes whole = rtps(0x15, 0x103);
-  for (std::size_t n = 0; n < whole.size(); ++n) {
-    const auto seen = peek(std::span(whole).first(n));
+  Bytes complete = rtps(0x15, 0x103);
+  for (std::size_t n = 0; n < complete.size(); ++n) {
+    const auto seen = peek(std::span(complete).first(n));
     EXPECT_EQ(seen.writer.has_value(), n >= 48) << n;
   }
   EXPECT_FALSE(peek(rtps(0x07, 0x103)).writer);  // a heartbeat

@@ -37,8 +37,8 @@ bool DiscoveryAssist::sent(std::span<std::uint8_t> message, in_addr_t address, s
     announcement_.assign(message.begin(), message.end());
     Peer* peer = at(address, port);
     if (peer == nullptr) return true;
-    if (peer->knows_us && now - peer->told < kUnicastInterval) return false;
-    peer->told = now;
+    if (peer->knows_us && now - peer->announced < kUnicastInterval) return false;
+    peer->announced = now;
     return true;
   }
   change_heartbeat_counts(message, of_discovery, kCounts, 0);

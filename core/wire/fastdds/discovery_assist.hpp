@@ -65,7 +65,7 @@ class DiscoveryAssist {
     std::uint16_t port{};
     Duration heard{};  ///< When its last datagram arrived.
     bool knows_us{};
-    Duration told{};  ///< When an announcement was last sent to it by unicast.
+    Duration announced{};  ///< When an announcement was last sent to it by unicast.
     Duration announce_at{Duration::max()};
     int announcements_left{};
     std::map<std::uint32_t, Beat> beats{};  ///< Unacknowledged heartbeats of our discovery writers.

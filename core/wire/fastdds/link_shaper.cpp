@@ -64,7 +64,7 @@ LinkShaper::Waiting LinkShaper::classify(std::span<const std::uint8_t> message, 
   // A new sample of a stream replaces a queued one of the same key, and a repair or heartbeat replaces a
   // queued equal one. Otherwise a repair that is requested again while it is queued is sent once per request.
   const std::optional<std::uint64_t> key = settings.keyed ? sample_key(message) : 0;
-  const bool newest = settings.newest_wins && seen.whole && key;
+  const bool newest = settings.newest_wins && seen.complete && key;
   std::uint64_t number = newest ? *seen.writer ^ *key : seen.dedup_key;
   if (number != 0) {
     number = (number ^ (static_cast<std::uint64_t>(address) << 16 | port)) * 0x9e3779b97f4a7c15ULL;

@@ -155,9 +155,9 @@ RtpsPeek peek(Message message) {
       if (sub.body.size() < 12) return has_dedup_key = false;
       if (!result.writer) {
         result.writer = entity(sub.body, 8);  // Extra flags 2, offset of inline QoS 2, reader 4, writer 4.
-        result.whole = sub.kind == kData;
+        result.complete = sub.kind == kData;
       }
-      if (++samples > 1) result.whole = false;
+      if (++samples > 1) result.complete = false;
     }
     if (sub.kind != kInfoTimestamp && sub.kind != kStatistics)
       has_dedup_key = has_dedup_key && add_to_dedup_key(sub, hash);

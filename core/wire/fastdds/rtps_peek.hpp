@@ -14,7 +14,7 @@ namespace adit::wire {
 /// What the headers of an RTPS message show; none of it is trusted.
 struct RtpsPeek {
   std::optional<std::uint32_t> writer{};  ///< Entity id of the writer of the first sample, if there is one.
-  bool whole{};                           ///< The sample is the only one and not a fragment.
+  bool complete{};                        ///< The sample is the only one and not a fragment.
   std::optional<ParticipantId> source{};  ///< The participant that sent the message.
   /// The participant that the first submessages address, if it is a single one.
   std::optional<ParticipantId> destination{};

@@ -81,8 +81,8 @@ void ParticipantState::on_announcement(int from) {
   const auto [peer, is_new] = peers.try_emplace(from);
   peer->second.heard = core->scheduler.elapsed();
   if (!peer->second.knows_us) {
-    peer->second.tells = Discovery::kAnnounceRetries;
-    if (!peer->second.telling) announce_again(from);
+    peer->second.announcements_left = Discovery::kAnnounceRetries;
+    if (!peer->second.announcing) announce_again(from);
   }
   if (!is_new) return;
   notify(from, true);
@@ -104,14 +104,14 @@ void ParticipantState::announce_to(int peer) {
 }
 
 void ParticipantState::announce_again(int peer) {
-  peers.at(peer).telling = true;
+  peers.at(peer).announcing = true;
   core->after(Discovery::kAnnounceRetryPeriod, [weak = weak_from_this(), peer] {
     const auto self = weak.lock();
     if (!self || self->stopped) return;
     const auto known = self->peers.find(peer);
     if (known == self->peers.end()) return;
-    known->second.telling = false;
-    if (known->second.knows_us || --known->second.tells < 0) return;
+    known->second.announcing = false;
+    if (known->second.knows_us || --known->second.announcements_left < 0) return;
     self->announce_to(peer);
     self->announce_again(peer);
   });

@@ -139,9 +139,9 @@ struct ReaderState : std::enable_shared_from_this<ReaderState> {
 struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
   struct Peer {
     Duration heard{};
-    bool knows_us{};  ///< It sent something to us by unicast.
-    int tells{};      ///< Announcements left to send to it while it does not know us.
-    bool telling{};
+    bool knows_us{};           ///< It sent something to us by unicast.
+    int announcements_left{};  ///< Announcements left to send to it while it does not know us.
+    bool announcing{};
     std::map<int, TopicOf> writers{}, readers{};  ///< As announced, by entity.
     std::string incompatible{};                   ///< As in ParticipantEvent.
   };

@@ -44,13 +44,13 @@ void ReaderState::on_heartbeat(EndpointId writer, std::uint64_t start, std::uint
     } else if (held->first == proxy.next && held->second.missing == 0) {
       drain(writer, proxy);
     } else {
-      const bool whole = held->second.missing == 0;
+      const bool complete = held->second.missing == 0;
       if (!discovery) {
         owner->count(topic.name, owner->peer_participant(writer.node)->id).lost +=
-            held->first - proxy.next + (whole ? 0 : 1);
+            held->first - proxy.next + (complete ? 0 : 1);
       }
-      proxy.next = held->first + (whole ? 0 : 1);
-      if (!whole) proxy.held.erase(held);
+      proxy.next = held->first + (complete ? 0 : 1);
+      if (!complete) proxy.held.erase(held);
     }
   }
   drain(writer, proxy);

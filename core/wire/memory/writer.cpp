@@ -53,8 +53,8 @@ void WriterState::add(Sample sample) {
   sample.sequence = next++;
   if (topic.qos.reliable) {
     const auto same_key = [&sample](const Sample& old) { return old.key == sample.key; };
-    const auto kept = static_cast<std::size_t>(std::count_if(history.begin(), history.end(), same_key));
-    if (kept >= topic.depth) {
+    const auto stored = static_cast<std::size_t>(std::count_if(history.begin(), history.end(), same_key));
+    if (stored >= topic.depth) {
       history.erase(std::find_if(history.begin(), history.end(), same_key));
     } else if (history.size() >= kMaxSamples) {
       history.pop_front();
