@@ -166,11 +166,11 @@ std::vector<Explorer::Viewpoint> Explorer::viewpoints(GroundView& ground, const 
   for (std::size_t i = 0; i < frontiers.list.size(); ++i) {
     const Frontier& frontier = frontiers.list[i];
     std::vector<Eigen::Vector3d> places = places_around(ground, frontier, place, stamp_s);
-    std::size_t kept = 0;
+    std::size_t added = 0;
     const auto keep = [&](const Eigen::Vector3d& p) {
       if (!shows(p, frontier) || !ground.standable(p)) return false;
-      all.push_back({p, i, kept == 0, true});
-      ++kept;
+      all.push_back({p, i, added == 0, true});
+      ++added;
       return true;
     };
     const auto beside = std::find_if(places.begin(), places.end(), keep);
@@ -186,7 +186,7 @@ std::vector<Explorer::Viewpoint> Explorer::viewpoints(GroundView& ground, const 
       return (a - place).squaredNorm() < (b - place).squaredNorm();
     });
     for (const Eigen::Vector3d& p : places) {
-      if (kept > kViewpoints) break;
+      if (added > kViewpoints) break;
       keep(p);
     }
   }

@@ -128,8 +128,8 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
   const bool ahead = moves.vx * wanted.vx + moves.vy * wanted.vy > 0;
   if (ahead && speed > kSlow && by_odometry <= kFastest * platform_.max_speed &&
       speed - speed_of(allowed) > lost) {
-    const double kept = 1 - params_.braking_share * lost / speed;
-    const double braked = std::min(kept, speed_scale(moves, odom, now_s));
+    const double by_brakes = 1 - params_.braking_share * lost / speed;
+    const double braked = std::min(by_brakes, speed_scale(moves, odom, now_s));
     Twist2 braking = scaled(moves, braked);
     braking.vz = wanted.vz;
     // Compensates the slip of tracks.

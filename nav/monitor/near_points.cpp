@@ -55,7 +55,7 @@ NearPoints::NearPoints(const Platform& platform, double reach, const NearPointsP
       cells_(kSide * kSide) {
   used_.reserve(cells_.size());
   places_.reserve(kMax);
-  kept_.reserve(kMax);
+  remembered_.reserve(kMax);
 }
 
 std::size_t NearPoints::coarse(float x, float y) {
@@ -205,7 +205,7 @@ bool NearPoints::seen_past(const Eigen::Vector3d& local, const Pose3& body,
 
 void NearPoints::remember(const Pose3& body, const Tilt& tilt, const Fan& fan, double stamp_s,
                           const UprightRangeImage& seen) {
-  kept_.clear();
+  remembered_.clear();
   const PlanarTransform back(body.planar().inverse());
   for (Place& place : places_) {
     if (stamp_s - place.seen > params_.memory) continue;
@@ -215,7 +215,7 @@ void NearPoints::remember(const Pose3& body, const Tilt& tilt, const Fan& fan, d
     const Eigen::Vector3d level(at.x(), at.y(), place.z - body.position.z());
     const Eigen::Vector3d local = tilt.R_level_base.cast<double>().transpose() * level;
     // An obstacle nearer than the lidar's minimum range would block the rays that went past.
-    if (again || (hidden(local, fan) && !seen_past(local, body, seen))) kept_.push_back(place);
+    if (again || (hidden(local, fan) && !seen_past(local, body, seen))) remembered_.push_back(place);
   }
 }
 
@@ -224,7 +224,7 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
   const Tilt tilt = tilt_of(body);
   const Fan fan = sort_in(points, tilt);
   remember(body, tilt, fan, stamp_s, seen);
-  std::swap(places_, kept_);
+  std::swap(places_, remembered_);
   // Nearest first, in case there are more than the maximum.
   const auto rank = [this](std::uint32_t i) {
     return std::pair{cells_[i].x * cells_[i].x + cells_[i].y * cells_[i].y, i};

@@ -31,7 +31,7 @@ struct NearPointsParams {
 /// obstacle only if it is too high above the higher of both planes, and is examined from the lower one on.
 class NearPoints {
  public:
-  static constexpr std::size_t kMax = 4096;  ///< Maximum number of places; the nearest are kept.
+  static constexpr std::size_t kMax = 4096;  ///< Maximum number of places; the nearest remain.
   /// Position of an obstacle, odometry frame, m: the mean of the returns in one 5 cm cell.
   struct Place {
     float x{}, y{};
@@ -93,7 +93,7 @@ class NearPoints {
   std::vector<float> highest_;  ///< Highest return in each 5 cm cell that is too high to step on, m.
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> used_{};
-  std::vector<Place> places_{}, kept_{};
+  std::vector<Place> places_{}, remembered_{};
 };
 
 }  // namespace adit::nav

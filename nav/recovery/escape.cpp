@@ -10,7 +10,7 @@ namespace {
 constexpr double kStep = 0.10;                // Length of a motion, m.
 constexpr double kTurn = 5.0 * M_PI / 180.0;  // Angle of a turn on the spot, rad.
 constexpr double kCell = 0.05;                // States in the same cell and turn are equal, m.
-constexpr float kKept = 0.02f;                // An obstacle that is farther away may come as near as this, m.
+constexpr float kMinClearance = 0.02f;        // An obstacle that is farther away may come as near as this, m.
 constexpr float kCloser = 0.002f;             // A smaller change does not count as closer, m.
 constexpr float kChange = 0.1f;               // Cost of a change of direction, m.
 
@@ -78,7 +78,7 @@ void Escape::offer(std::int32_t from, const Pose2& motion, int direction, float 
   auto& closed = closed_[static_cast<std::size_t>((turn * kSide + y) * kSide + x)];
   if (closed == round_) return;
   const float depth = points_.depth(body_, pose);
-  if (depth > std::max(before.least, -kKept) + kCloser) return;
+  if (depth > std::max(before.least, -kMinClearance) + kCloser) return;
   closed = round_;
   if (before.direction != direction && from != 0) cost += kChange;
   const float total = before.cost + cost;

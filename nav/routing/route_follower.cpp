@@ -196,18 +196,18 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const Eigen::Vector3d& plac
     goal_ = goal;
   }
   if (planner.map().used() == 0) return {RouteStep::State::straight, goal, true};
-  bool kept = route_.found(), longer = false;
-  if (kept) advance(planner, place);
+  bool usable = route_.found(), longer = false;
+  if (usable) advance(planner, place);
   watch_blocked(planner, place, blocked, stamp_s);
   // The plain map does not permit a doubtful route, so it stays valid until the next search.
-  const bool lost = kept && !route_.doubtful && !planner.measure(route_);
-  kept = kept && !lost && !route_.doubtful;
+  const bool lost = usable && !route_.doubtful && !planner.measure(route_);
+  usable = usable && !lost && !route_.doubtful;
   if (lost || !looked_ || stamp_s - *looked_ >= params_.look) {
     looked_ = stamp_s;
     Route other = planner.plan(place, goal);
     const bool better =
         other.cost < route_.cost * params_.switch_ratio && other.cost < route_.cost - params_.gain;
-    if (!kept || (other.found() && better)) {
+    if (!usable || (other.found() && better)) {
       longer = other.found() && other.length > route_.length + params_.gain;
       route_ = std::move(other);
     }

@@ -13,7 +13,7 @@ inline constexpr float kRouteCellF = static_cast<float>(kRouteCell);
 inline constexpr int kTileSide = 16;  ///< cells
 inline constexpr int kTileArea = kTileSide * kTileSide;
 inline constexpr int kTileHalo = 8;    ///< Clearance is computed up to this many cells.
-inline constexpr int kTileNodes = 16;  ///< Maximum number; the widest openings of a side are kept.
+inline constexpr int kTileNodes = 16;  ///< Maximum number; the widest openings of a side remain.
 /// Height difference from which ground belongs to another floor, m.
 inline constexpr float kFloorSeparation = 1.5f;
 inline constexpr float kUnreached = std::numeric_limits<float>::infinity();

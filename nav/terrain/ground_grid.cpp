@@ -46,9 +46,9 @@ int bits_of(int half) {
 void thin_out(std::vector<Eigen::Vector3f>& samples) {
   const std::size_t every = (samples.size() + kMaxSamples - 1) / kMaxSamples;
   if (every < 2) return;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < samples.size(); i += every) samples[kept++] = samples[i];
-  samples.resize(kept);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples.size(); i += every) samples[count++] = samples[i];
+  samples.resize(count);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ GroundGrid::GroundGrid(const GroundParams& params)
       side_(2 * half_ + 1),
       bits_(bits_of(half_)),
       mask_((1 << bits_) - 1),
-      kept_((1 << bits_) / 2 - 1) {
+      memory_half_((1 << bits_) / 2 - 1) {
   const std::size_t places = std::size_t{1} << (2 * bits_);
   const auto cells = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
   low_.assign(places, kNothing);
@@ -141,7 +141,7 @@ void GroundGrid::roll(int x, int y) {
     }
   };
   // Stairs that the robot climbed are not visible from the landing, and it needs them when it turns round.
-  entering(kept_, [&](std::size_t s) { stamp_[s] = kLongAgo; });
+  entering(memory_half_, [&](std::size_t s) { stamp_[s] = kLongAgo; });
   entering(half_, [&](std::size_t s) { entered_.push_back(s); });
 }
 

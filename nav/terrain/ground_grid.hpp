@@ -151,7 +151,7 @@ class GroundGrid {
   GroundParams params_;
   int half_, side_;            ///< Cells around the robot; cells of the window.
   int bits_, mask_;            ///< Of the torus, which is larger than the window.
-  int kept_;                   ///< Measurements are stored this many cells around the robot.
+  int memory_half_;            ///< Measurements are stored this many cells around the robot.
   std::vector<Step> steps_{};  ///< The window from the middle outwards.
   /// Limits by the number of cells since the last measured one: rise, fall, rise by slope alone, and drop.
   std::array<float, 256> rise_{}, fall_{}, climb_{}, limit_{};

@@ -68,7 +68,7 @@ void ObstacleCells::mark_under(float x, float y) {
 
 void ObstacleCells::keep(const View& view, const LidarRangeImage& rays, const GroundGrid& ground,
                          float step) {
-  std::size_t kept = 0;
+  std::size_t remaining = 0;
   for (Entry& entry : entries_) {
     const bool passable = entry.scan != scan_ && ground.measured(entry.x(), entry.y()) &&
                           entry.z_high - ground.before(entry.x(), entry.y()) <= step;
@@ -76,10 +76,10 @@ void ObstacleCells::keep(const View& view, const LidarRangeImage& rays, const Gr
       slots_[slot(entry.ix, entry.iy)] = 0;
       continue;
     }
-    entries_[kept] = entry;
-    slots_[slot(entry.ix, entry.iy)] = static_cast<std::uint32_t>(++kept);
+    entries_[remaining] = entry;
+    slots_[slot(entry.ix, entry.iy)] = static_cast<std::uint32_t>(++remaining);
   }
-  entries_.resize(kept);
+  entries_.resize(remaining);
 }
 
 bool ObstacleCells::stray(const Entry& entry, float dx, float dy, float range) const {

@@ -195,7 +195,7 @@ void Tracker::follow(double dt) {
     followed[track] = observations_[observation].taken = true;
     confirm(tracks_[track], observations_[observation]);
   }
-  std::size_t kept = 0;
+  std::size_t remaining = 0;
   for (std::size_t i = 0; i < track_count_; ++i) {
     Track& t = tracks_[i];
     const double unseen = stamp_s_ - t.seen_s;
@@ -210,10 +210,10 @@ void Tracker::follow(double dt) {
       t.speed = kFirstSigma * kFirstSigma;
       t.place = std::min(t.place, kLostSigma * kLostSigma);
     }
-    if (kept != i) tracks_[kept] = t;
-    ++kept;
+    if (remaining != i) tracks_[remaining] = t;
+    ++remaining;
   }
-  track_count_ = kept;
+  track_count_ = remaining;
   for (std::size_t k = 0; k < observation_count_ && track_count_ < kTracks; ++k) {
     if (observations_[k].taken) continue;
     Track& t = tracks_[track_count_++];

@@ -17,7 +17,7 @@ constexpr int kAngles = CorrespondenceGrid::kAngles;
 constexpr int kHeadingStep = 10;  ///< Degrees.
 /// Smaller heading errors need no turn on the spot: the controller corrects them, degrees.
 constexpr double kNoTurn = 12.0;
-constexpr double kEitherSide = 140.0;  ///< Beyond this angle the side of a turn is kept once chosen, degrees.
+constexpr double kEitherSide = 140.0;  ///< Beyond this angle the side of a turn stays once chosen, degrees.
 constexpr double kTurnSlack = 0.06;    ///< Clearance ahead beyond what a turn on the spot needs, m.
 constexpr double kTurnMargin = 0.04;   ///< Clearance around the footprint during a turn on the spot, m.
 constexpr float kSmooth = 0.1f;        ///< Ground up to this cost counts as smooth.
@@ -27,15 +27,15 @@ constexpr double kSlowest = 0.25;                   ///< Fraction of the speed o
 constexpr double kLongestRetreat = 8.0;             ///< A retreat that takes longer is blocked too, s.
 constexpr float kSecondChoice = 0.3f;  ///< Weight of the driving direction opposite to the target's.
 
-/// Whole degrees in [0, 360) of an angle in radians.
-int whole_degrees(float radians) {
+/// Converts an angle in radians to degrees in [0, 360), rounded down.
+int to_degrees(float radians) {
   int d = static_cast<int>(std::floor(radians * static_cast<float>(1.0 / kDegree)));
   d %= kAngles;
   return d < 0 ? d + kAngles : d;
 }
 
-/// Rounds an angle to whole degrees, rad.
-double whole(double radians) { return std::round(radians / kDegree) * kDegree; }
+/// Rounds an angle to a multiple of a degree, rad.
+double round_to_degree(double radians) { return std::round(radians / kDegree) * kDegree; }
 
 /// Falco's weight of a heading: it falls steeply with the turn that the heading needs.
 float heading_weight(double degrees) {
@@ -211,7 +211,7 @@ bool FalcoPlanner::given_up(bool drives, double stamp_s) {
 FalcoPlanner::Goal FalcoPlanner::retreat_goal(const Pose2& pose, double stamp_s) {
   const Eigen::Vector2d to = pose.inverse() * retreat_to_;
   constexpr double kSpread = 45.0;
-  Goal goal{to.norm(), whole(std::atan2(to.y(), to.x())),
+  Goal goal{to.norm(), round_to_degree(std::atan2(to.y(), to.x())),
             kSpread,   static_cast<int>(kSpread / kHeadingStep),
             true,      false};
   goal.backwards = std::fabs(goal.bearing) > M_PI / 2;
@@ -245,7 +245,7 @@ FalcoPlanner::Goal FalcoPlanner::goal_of(const Target& target, const Pose2& pose
   if (target.kind == Target::Kind::goal) {
     const Eigen::Vector2d to = pose.inverse() * target.goal;
     goal.distance = to.norm();
-    goal.bearing = goal.distance > 1e-6 ? whole(std::atan2(to.y(), to.x())) : 0.0;
+    goal.bearing = goal.distance > 1e-6 ? round_to_degree(std::atan2(to.y(), to.x())) : 0.0;
     goal.spread = params_.goal_spread;
   }
   goal.headings = static_cast<int>(goal.spread / kHeadingStep);
@@ -274,12 +274,12 @@ void FalcoPlanner::project(const Goal& goal, std::span<const ObstaclePoint> obst
     const float angle = std::atan2(p.y, p.x);
     const bool solid = p.cost >= 1.0f;
     if (solid) {
-      if (ring < rotation.rings()) rotation.limit(ring, whole_degrees(angle), room_);
+      if (ring < rotation.rings()) rotation.limit(ring, to_degrees(angle), room_);
       clearance = std::min(clearance, std::max(0.0f, -body_.depth(p.x, p.y)));
     }
     if (ring >= rings_) continue;
     Cells& cells = solid ? occupied_ : rough_[p.cost < kVeryRough ? 0 : 1];
-    cells.add(ring, whole_degrees(angle - bearing));
+    cells.add(ring, to_degrees(angle - bearing));
   }
   plan.clearance = clearance;
   occupied_.to_list();

@@ -53,7 +53,7 @@ Plan HybridAStarPlanner::plan(const Target& target, const Pose2& pose,
   const bool goal = target.kind == Target::Kind::goal;
   plan.arrived = goal && distance <= params_.tolerance;
   if (nowhere || plan.arrived) {
-    kept_.count = 0;
+    current_.count = 0;
     heading_hold_.forget();
     forget_retreat();
     plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
@@ -65,22 +65,22 @@ Plan HybridAStarPlanner::plan(const Target& target, const Pose2& pose,
   if (goal && !retreat_) see_passage(target, pose, obstacles, task);
   // The collision monitor blocks what the planner would choose now; during a retreat the choice is free.
   const bool held = target.held && goal && !retreat_;
-  const bool keeps = !held && follows_on(rear) && kept_for_.kind == aim.kind &&
-                     (!goal || (kept_for_.goal - aim.goal).norm() < 1.0) && passable(rear);
-  // A path through a gap is kept unless a nearer view shows that it misses the middle.
-  const bool to_passage = keeps && kept_.through && task.passage;
+  const bool keeps = !held && follows_on(rear) && current_aim_.kind == aim.kind &&
+                     (!goal || (current_aim_.goal - aim.goal).norm() < 1.0) && passable(rear);
+  // A path through a gap stays unless a nearer view shows that it misses the middle.
+  const bool to_passage = keeps && current_.through && task.passage;
   const bool goes_through = to_passage && !misses(*task.passage, rear);
   if (to_passage && !changes_ahead()) task.only = 1;
   const bool finds = !held && !goes_through && (to_passage ? find_through(task) : find(task));
   const bool takes = finds && (!keeps || is_better(rear, to_passage));
   if (takes) {
     adopt(rear);
-    kept_for_ = aim;
+    current_aim_ = aim;
   }
   const bool drives = takes || keeps;
   const bool tired = given_up(target, distance, drives, stamp_s);
   if (!drives || tired) {
-    kept_.count = 0;
+    current_.count = 0;
     plan.blocked = true;
     plan.reason = Reason::blocked;
     if (!tired) consider_retreat(target, pose, stamp_s);
@@ -105,7 +105,7 @@ Target HybridAStarPlanner::aim_of(const Target& target, const Pose2& pose, doubl
   }
   if (retreat_ && ((*retreat_ - pose.position()).norm() < kThere || stamp_s > retreat_until_)) {
     retreat_.reset();
-    kept_.count = 0;
+    current_.count = 0;
   }
   return retreat_ ? Target::to(*retreat_, target.speed) : target;
 }
@@ -218,7 +218,7 @@ bool HybridAStarPlanner::find_through(HybridAStarTask task) {
 // Whether the current path misses the middle of the gap and can still be corrected.
 bool HybridAStarPlanner::misses(const Pose2& passage, const Pose2& rear) const {
   const Pose2 to_passage = passage.inverse();
-  const Pose2 end = to_passage * rear.inverse() * kept_.spots[kept_.count - 1].pose;
+  const Pose2 end = to_passage * rear.inverse() * current_.spots[current_.count - 1].pose;
   const double turned = wrap_angle(end.yaw);
   const double aside = std::fabs(end.y - end.x * std::tan(turned)) + std::fabs(turned) * body_.front();
   return -to_passage.x - (rear_ + body_.front()) > kMends && aside > kMisses;
@@ -226,22 +226,22 @@ bool HybridAStarPlanner::misses(const Pose2& passage, const Pose2& rear) const {
 
 // Whether the new path replaces the current one.
 bool HybridAStarPlanner::is_better(const Pose2& rear, bool to_passage) const {
-  const double ahead = kept_.cost() - static_cast<double>(kept_.spots[at_].cost);
+  const double ahead = current_.cost() - static_cast<double>(current_.spots[at_].cost);
   // Through a gap, a central path is worth a slightly longer distance, but no turning.
   if (to_passage) return found_.cost() < ahead + (found_.straight_on() ? params_.better : -params_.better);
   if (found_.through) return true;
-  if (found_.tight && !kept_.tight) return false;
-  const bool other = found_.spots[0].direction != kept_.spots[end_].direction;
+  if (found_.tight && !current_.tight) return false;
+  const bool other = found_.spots[0].direction != current_.spots[end_].direction;
   if (!other && !changes_ahead() && found_.straight_on()) return true;
   const Eigen::Vector2d end =
-      rear.inverse() * (kept_.spots[kept_.count - 1].pose * Eigen::Vector2d(rear_, 0.0));
+      rear.inverse() * (current_.spots[current_.count - 1].pose * Eigen::Vector2d(rear_, 0.0));
   const double left = cost_to_go_.at(static_cast<float>(end.x()), static_cast<float>(end.y()));
   return found_.cost() + found_.left + params_.better < ahead + left;
 }
 
 void HybridAStarPlanner::adopt(const Pose2& rear) {
-  kept_ = found_;
-  for (std::size_t i = 0; i < kept_.count; ++i) kept_.spots[i].pose = rear * kept_.spots[i].pose;
+  current_ = found_;
+  for (std::size_t i = 0; i < current_.count; ++i) current_.spots[i].pose = rear * current_.spots[i].pose;
   end_ = 0;
   next_part();
 }
@@ -249,26 +249,26 @@ void HybridAStarPlanner::adopt(const Pose2& rear) {
 void HybridAStarPlanner::next_part() {
   at_ = end_;
   std::size_t i = at_ + 1;
-  while (i + 1 < kept_.count && kept_.spots[i + 1].direction == kept_.spots[at_ + 1].direction) ++i;
+  while (i + 1 < current_.count && current_.spots[i + 1].direction == current_.spots[at_ + 1].direction) ++i;
   end_ = i;
 }
 
 bool HybridAStarPlanner::drives_ahead() const {
   if (retreat_) return false;
-  for (std::size_t i = at_ + 1; i < kept_.count; ++i)
-    if (kept_.spots[i].direction < 0) return false;
+  for (std::size_t i = at_ + 1; i < current_.count; ++i)
+    if (current_.spots[i].direction < 0) return false;
   return true;
 }
 
-bool HybridAStarPlanner::changes_ahead() const { return end_ + 1 < kept_.count; }
+bool HybridAStarPlanner::changes_ahead() const { return end_ + 1 < current_.count; }
 
 bool HybridAStarPlanner::follows_on(const Pose2& rear) {
-  if (kept_.count < 2) return false;
+  if (current_.count < 2) return false;
   const auto nearest = [&] {
     double best = std::numeric_limits<double>::infinity();
     std::size_t where = at_;
     for (std::size_t i = at_; i <= end_; ++i) {
-      const double d = (kept_.spots[i].pose.position() - rear.position()).squaredNorm();
+      const double d = (current_.spots[i].pose.position() - rear.position()).squaredNorm();
       if (d < best) best = d, where = i;
     }
     return where;
@@ -280,7 +280,7 @@ bool HybridAStarPlanner::follows_on(const Pose2& rear) {
     next_part();
     at_ = nearest();
   }
-  const Pose2& spot = kept_.spots[at_].pose;
+  const Pose2& spot = current_.spots[at_].pose;
   return (spot.position() - rear.position()).norm() < params_.off_path &&
          std::fabs(wrap_angle(spot.yaw - rear.yaw)) < params_.off_heading;
 }
@@ -289,9 +289,9 @@ bool HybridAStarPlanner::passable(const Pose2& rear) const {
   const Pose2 back = rear.inverse();
   // Places in which the robot already is do not count.
   const std::size_t first = at_ + 8;
-  for (std::size_t i = first; i < kept_.count; i += 2)
-    if (!search_.free(distance_field_, back * kept_.spots[i].pose, kept_.tight,
-                      kept_.tight ? kTightLoss : kHysteresis))
+  for (std::size_t i = first; i < current_.count; i += 2)
+    if (!search_.free(distance_field_, back * current_.spots[i].pose, current_.tight,
+                      current_.tight ? kTightLoss : kHysteresis))
       return false;
   return true;
 }
@@ -328,7 +328,7 @@ bool HybridAStarPlanner::tightens(const Pose2& back, std::size_t last) const {
   const double ahead = kTightAhead + slow / (2.0 * platform_.max_acceleration);
   const auto end = std::min(last, at_ + static_cast<std::size_t>(ahead / search_.motions().spacing()));
   for (std::size_t i = at_; i <= end; i += 2)
-    if (!search_.free(distance_field_, back * kept_.spots[i].pose, false, 0.0f)) return true;
+    if (!search_.free(distance_field_, back * current_.spots[i].pose, false, 0.0f)) return true;
   return false;
 }
 
@@ -336,20 +336,20 @@ void HybridAStarPlanner::write(const Target& target, const Pose2& pose,
                                std::span<const ObstaclePoint> obstacles, Plan& plan) const {
   const std::size_t last = std::min(end_, at_ + Plan::kMaxPath - 1);
   for (std::size_t i = at_; i <= last; ++i)
-    plan.poses[plan.pose_count++] = kept_.spots[i].pose * Pose2{rear_, 0, 0};
+    plan.poses[plan.pose_count++] = current_.spots[i].pose * Pose2{rear_, 0, 0};
   plan.length = static_cast<double>(plan.pose_count - 1) * search_.motions().spacing();
-  plan.reverse = kept_.spots[end_].direction < 0;
+  plan.reverse = current_.spots[end_].direction < 0;
   const Eigen::Vector2d end = plan.poses[plan.pose_count - 1].position();
   plan.ends_at_goal = target.kind == Target::Kind::goal && (end - target.goal).norm() <= params_.tolerance;
   plan.option = 0;
   double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
   if (plan.reverse) limit = std::min(limit, params_.reverse_speed);
   const Pose2 back = (pose * Pose2{-rear_, 0, 0}).inverse();
-  if (kept_.tight && tightens(back, last)) limit = std::min(limit, params_.tight_speed);
+  if (current_.tight && tightens(back, last)) limit = std::min(limit, params_.tight_speed);
   // Ground with a cost is driven slowly.
   float rough = 0.0f;
   for (std::size_t i = at_; i <= last; i += 2) {
-    const Pose2 at = back * kept_.spots[i].pose;
+    const Pose2 at = back * current_.spots[i].pose;
     rough = std::max(rough, distance_field_.cost(static_cast<float>(at.x), static_cast<float>(at.y)));
   }
   limit = std::min(limit, platform_.max_speed * (1.0 - params_.rough_slows * static_cast<double>(rough)));

@@ -81,10 +81,10 @@ class HybridAStarPlanner final : public Planner {
   HybridAStarSearch search_;
   DistanceField distance_field_{};
   CostToGo cost_to_go_{};
-  HybridAStarPath found_{}, kept_{};  ///< kept_: odometry frame.
+  HybridAStarPath found_{}, current_{};  ///< current_: odometry frame.
   std::size_t at_{0},
-      end_{0};  ///< On the current path: index of the robot, and of the next change of direction.
-  Target kept_for_{};
+      end_{0};            ///< On the current path: index of the robot, and of the next change of direction.
+  Target current_aim_{};  ///< Of the current path.
   std::optional<Pose2> before_{};  ///< Of the rear axle, odometry frame.
   double before_s_{0};
   double speed_{0};      ///< Negative backwards, m/s.

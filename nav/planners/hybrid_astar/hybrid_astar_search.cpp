@@ -110,13 +110,13 @@ void HybridAStarSearch::expand(const DistanceField& field, const CostToGo& cost_
       if (std::fabs(wrap_angle(along - task.heading)) > task.spread) continue;
       const std::int32_t there = state(end, direction);
       if (there < 0 || closed_[static_cast<std::size_t>(there)] == round_) continue;
-      const float half = price(field, middle, leaving), whole = price(field, end, leaving);
-      if (half < 0 || whole < 0) continue;
+      const float middle_price = price(field, middle, leaving), end_price = price(field, end, leaving);
+      if (middle_price < 0 || end_price < 0) continue;
       const Eigen::Vector2d base = end * Eigen::Vector2d(base_, 0.0);
       const float left = cost_to_go.at(static_cast<float>(base.x()), static_cast<float>(base.y()));
       if (left >= CostToGo::kUnreachable || nodes_.size() == kMaxNodes || open_.size() == kMaxNodes) continue;
       const auto step = static_cast<float>(primitives_.step());
-      float cost = 0.5f * (half + whole) * step;
+      float cost = 0.5f * (middle_price + end_price) * step;
       if (direction < 0) cost *= static_cast<float>(params_.reverse_cost);
       if (changes) cost += static_cast<float>(params_.change_cost);
       if (on) cost += static_cast<float>(params_.steer_cost * std::abs(level - from.level));
