@@ -123,7 +123,7 @@ void draw_legend(Sketch& sketch, const MapPicture& picture, double top) {
 Result<void> save(Sketch& sketch, const std::string& file) {
   const std::string png = sketch.png();
   if (png.empty()) return {Reason::cannot_write, file + ": the picture could not be drawn"};
-  return perception::write_file_whole(file, [&](std::ostream& to) -> Result<void> {
+  return perception::write_file_atomically(file, [&](std::ostream& to) -> Result<void> {
     to << png;
     return {};
   });

@@ -158,7 +158,7 @@ void ScanMasks::trace(const Rays& rays, double resolution, const OccupiedBefore&
   if (table_.size() < cells) table_.resize(cells, 0);
   // The ends of rays first: one ray for all points in a voxel. As with OctoMap, a ray that ends at the range
   // alone does not free the voxel in which it ends.
-  std::size_t kept = 0;
+  std::size_t remaining = 0;
   for (std::size_t i = 0; i < ends_.size(); ++i) {
     const End end = ends_[i];
     const Eigen::Vector3i voxel = floor_of(end.at);
@@ -167,9 +167,9 @@ void ScanMasks::trace(const Rays& rays, double resolution, const OccupiedBefore&
     const std::uint64_t mask = std::uint64_t{1} << ((voxel.x() & 7) + 8 * (voxel.y() & 7));
     if (end.hit && (in.hit[layer] & mask) != 0) continue;
     if (end.hit) in.hit[layer] |= mask;
-    ends_[kept++] = end;
+    ends_[remaining++] = end;
   }
-  for (std::size_t i = 0; i < kept; ++i) walk(ends_[i], is_grazing(ends_[i], occupied_before));
+  for (std::size_t i = 0; i < remaining; ++i) walk(ends_[i], is_grazing(ends_[i], occupied_before));
 }
 
 }  // namespace adit::perception

@@ -36,11 +36,11 @@ BlockSet coarser(const BlockSet& set) {
   out.voxels.assign(set.indices.size() * out.voxels_in_block(), Voxel::unknown);
   for (std::size_t b = 0; b < set.indices.size(); ++b) {
     const Voxel* parts = &set.voxels[b * set.voxels_in_block()];
-    Voxel* whole = &out.voxels[b * out.voxels_in_block()];
+    Voxel* block = &out.voxels[b * out.voxels_in_block()];
     for (std::size_t z = 0; z < edge; ++z)
       for (std::size_t y = 0; y < edge; ++y)
         for (std::size_t x = 0; x < edge; ++x) {
-          Voxel& voxel = whole[x / 2 + half * (y / 2) + half * half * (z / 2)];
+          Voxel& voxel = block[x / 2 + half * (y / 2) + half * half * (z / 2)];
           voxel = std::max(voxel, parts[x + edge * y + edge * edge * z]);
         }
   }

@@ -37,10 +37,10 @@ class BlockStates {
   void fill_above(int finest) {
     for (int level = finest; level > 0; --level) {
       const Level& parts = (*this)[level];
-      Level& wholes = (*this)[level - 1];
+      Level& parents = (*this)[level - 1];
       const std::size_t size = size_at(level - 1);
-      wholes.assign(parts.size() / 8, 0);
-      for (std::size_t i = 0; i < wholes.size(); ++i) {
+      parents.assign(parts.size() / 8, 0);
+      for (std::size_t i = 0; i < parents.size(); ++i) {
         std::uint8_t any = 0, all = kFull | kKnown;
         for (int child = 0; child < 8; ++child) {
           const std::uint8_t part = parts[i / size * 8 * size + part_at(i % size, child, level)];
@@ -48,7 +48,7 @@ class BlockStates {
           if ((part & kKnown) == 0 || (level < finest && (part & kFull) == 0)) all = 0;
         }
         const bool full = (any & kOccupied) == 0 && all != 0;
-        wholes[i] = static_cast<std::uint8_t>(any | (full ? kFull : 0));
+        parents[i] = static_cast<std::uint8_t>(any | (full ? kFull : 0));
       }
     }
   }

@@ -324,21 +324,21 @@ class BlockWalk {
     if (has_base) pad(base_, level, block, base_fine_), pad(base_, level - 1, block, base_coarse_);
     for (std::size_t parent = 0; parent < size_at(level - 1); ++parent) {
       const std::size_t above = in_padded(parent, level - 1);
-      const std::uint8_t whole = coarse_[above];
+      const std::uint8_t parent_state = coarse_[above];
       std::uint8_t seen = 0;
       for (int child = 0; child < 8; ++child) {
         const std::size_t voxel = BlockStates::part_at(parent, child, level);
         const std::size_t at = in_padded(voxel, level);
         const std::uint8_t is = truth(level, first + voxel);
         std::uint8_t state = kUnknown;
-        if ((whole & kFull) != 0) {
+        if ((parent_state & kFull) != 0) {
           state = kKnown;
         } else if (is_given(block, level)) {
-          state = whole & (kKnown | kOccupied);
-        } else if ((whole & kKnown) != 0) {
+          state = parent_state & (kKnown | kOccupied);
+        } else if ((parent_state & kKnown) != 0) {
           const VoxelContext context = context_at(level, at, child, above, has_base);
           const bool last = child == 7, had = is_known_in_base(block, level, voxel);
-          if ((whole & kOccupied) == 0) {
+          if ((parent_state & kOccupied) == 0) {
             // Some part is known, and if the level above could say that all are, not all of them.
             const bool known = had || (last && (seen & 0x7f) == 0) ? true
                                : last && (seen & 0x7f) == 0x7f

@@ -26,7 +26,7 @@ const std::vector<Eigen::Vector3f>& Thinner::thin(std::span<const Eigen::Vector3
   // The first cloud finds its edge; later ones follow with one step each.
   for (int round = 0; round < (first ? 4 : 1); ++round) {
     ++number_;
-    kept_.clear();
+    thinned_.clear();
     const float scale = 1.0f / edge_;
     for (const Eigen::Vector3f& p : points) {
       const float range = p.squaredNorm();
@@ -40,16 +40,16 @@ const std::vector<Eigen::Vector3f>& Thinner::thin(std::span<const Eigen::Vector3
       if (cloud_[at] == number_) continue;
       cloud_[at] = number_;
       seen_[at] = key;
-      kept_.push_back(p);
+      thinned_.push_back(p);
     }
     if (round + 1 == (first ? 4 : 1)) break;
-    const float ratio = static_cast<float>(kept_.size()) / static_cast<float>(params_.wanted);
+    const float ratio = static_cast<float>(thinned_.size()) / static_cast<float>(params_.wanted);
     edge_ = std::clamp(edge_ * std::sqrt(ratio), params_.min_edge, params_.max_edge);
   }
   // Surfaces: the number of voxels falls with the square of the edge. Bounded, as one cloud may be odd.
-  const float ratio = static_cast<float>(kept_.size()) / static_cast<float>(params_.wanted);
+  const float ratio = static_cast<float>(thinned_.size()) / static_cast<float>(params_.wanted);
   edge_ = std::clamp(edge_ * std::clamp(std::sqrt(ratio), 0.8f, 1.25f), params_.min_edge, params_.max_edge);
-  return kept_;
+  return thinned_;
 }
 
 }  // namespace adit::perception

@@ -31,7 +31,7 @@ class Thinner {
   std::vector<std::uint64_t> seen_{};  ///< Hash set of voxel keys, each with the number of its cloud.
   std::vector<std::uint32_t> cloud_{};
   std::uint32_t number_{};
-  std::vector<Eigen::Vector3f> kept_{};
+  std::vector<Eigen::Vector3f> thinned_{};
 };
 
 }  // namespace adit::perception

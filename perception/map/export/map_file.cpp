@@ -55,18 +55,18 @@ Result<void> save_plan(const VoxelImage& image, const std::filesystem::path& fil
                        const SaveOptions& options) {
   const auto plan = floor_plan(image, options.floor);
   if (!plan) return plan.error();
-  const auto picture = write_file_whole(file, [&](std::ostream& to) { return write_pgm(*plan, to); });
+  const auto picture = write_file_atomically(file, [&](std::ostream& to) { return write_pgm(*plan, to); });
   if (!picture) return picture;
   std::filesystem::path yaml = file;
   yaml.replace_extension(".yaml");
-  return write_file_whole(
+  return write_file_atomically(
       yaml, [&](std::ostream& to) { return write_map_yaml(*plan, file.filename().string(), to); });
 }
 
 }  // namespace
 
-Result<void> write_file_whole(const std::filesystem::path& file,
-                              const std::function<Result<void>(std::ostream&)>& write) {
+Result<void> write_file_atomically(const std::filesystem::path& file,
+                                   const std::function<Result<void>(std::ostream&)>& write) {
   std::ostringstream content;
   const Result<void> made = write(content);
   if (!made) return made;
@@ -91,7 +91,7 @@ Result<void> save_map(const VoxelImage& image, const std::filesystem::path& file
   if (extension == ".pgm") return save_plan(image, file, options);
   for (const auto& [known, writer] : kWriters)
     if (extension == known)
-      return write_file_whole(file, [&, write = writer](std::ostream& to) { return write(image, to); });
+      return write_file_atomically(file, [&, write = writer](std::ostream& to) { return write(image, to); });
   return {Reason::bad_argument,
           file.string() + ": expected a name that ends in .bt, .ot, .pcd, .ply or .pgm"};
 }

@@ -13,8 +13,8 @@ namespace adit::perception {
 /// Writes a file that appears under its name only when it is complete: FILE.part, synced, renamed, and the
 /// folder synced. On failure the .part file is removed and the old file stays. Errors: those of `write`, or
 /// cannot_write with the file and the system's reason.
-Result<void> write_file_whole(const std::filesystem::path& file,
-                              const std::function<Result<void>(std::ostream&)>& write);
+Result<void> write_file_atomically(const std::filesystem::path& file,
+                                   const std::function<Result<void>(std::ostream&)>& write);
 
 /// Options of save_map().
 struct SaveOptions {

@@ -66,7 +66,7 @@ TEST_F(MapFile, SaysWhyItCannotSave) {
 TEST_F(MapFile, AFailureLeavesTheOldFileAndNoPart) {
   ASSERT_TRUE(save_map(image_, folder_ / "a.bt"));
   const auto size = fs::file_size(folder_ / "a.bt");
-  const auto failed = write_file_whole(folder_ / "a.bt", [](std::ostream& to) -> Result<void> {
+  const auto failed = write_file_atomically(folder_ / "a.bt", [](std::ostream& to) -> Result<void> {
     to << "half";
     return {Reason::map_empty, "no more"};
   });
