@@ -17,7 +17,7 @@ class Acknowledge : public Rule {
                 const ReportViolation& report_violation) override {
     if (std::get_if<AgentStarted>(&event)) {
       streams_.clear();
-      told_.clear();
+      reported_.clear();
     }
     if (const auto* sample = std::get_if<JoystickHeard>(&event)) on_sample(robot, *sample);
     const auto* ack = std::get_if<AckSent>(&event);
@@ -32,8 +32,8 @@ class Acknowledge : public Rule {
   void on_time(const RobotModel& robot, const ReportViolation& report_violation) override {
     if (!robot.alive() || robot.disturbed()) return;
     for (const RobotModel::Pending& p : robot.pending()) {
-      if (robot.now() - p.at <= kAnswerTime || p.at <= told_[p.command.from]) continue;
-      told_[p.command.from] = p.at;
+      if (robot.now() - p.at <= kAnswerTime || p.at <= reported_[p.command.from]) continue;
+      reported_[p.command.from] = p.at;
       report_violation("did not answer command " + std::to_string(p.command.seq) + " of " +
                        p.command.station);
     }
@@ -74,7 +74,7 @@ class Acknowledge : public Rule {
   }
 
   std::map<StationId, Stream> streams_{};
-  std::map<wire::ParticipantId, Duration> told_{};
+  std::map<wire::ParticipantId, Duration> reported_{};
 };
 
 }  // namespace

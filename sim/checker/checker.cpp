@@ -84,10 +84,10 @@ void Checker::dispatch(WatchedRobot& watch) {
   const auto is_status = [](const Event& e) { return std::holds_alternative<AuthoritySent>(e); };
   const auto last = std::find_if(watch.waiting.rbegin(), watch.waiting.rend(), is_status);
   if (last != watch.waiting.rend()) {
-    const Event kept = *last;
+    const Event status = *last;
     std::erase_if(watch.waiting, is_status);
     // Published first: a restarted component is recognised by it.
-    watch.waiting.insert(watch.waiting.begin(), kept);
+    watch.waiting.insert(watch.waiting.begin(), status);
   }
   std::stable_sort(watch.waiting.begin(), watch.waiting.end(),
                    [](const Event& a, const Event& b) { return rank(a) < rank(b); });

@@ -33,7 +33,7 @@ class Checker {
   /// Time went on to `now` (call it at least every 20 ms, and at the end).
   void advance(Duration now);
 
-  /// At most 100 of each rule are kept; all are counted.
+  /// At most 100 of each rule are stored; all are counted.
   const std::vector<Violation>& violations() const { return violations_; }
   std::uint64_t count(int rule) const { return counts_.at(static_cast<std::size_t>(rule)); }
 

@@ -19,8 +19,8 @@ class Lock : public Rule {
       on_status(robot, *status, report_violation);
     if (const auto* note = std::get_if<NotificationSent>(&event))
       if (std::erase(owed_codes_, Owed{note->code, note->to, {}}) == 0) {
-        told_.push_back({note->code, note->to, robot.now()});
-        if (told_.size() > 64) told_.pop_front();
+        sent_codes_.push_back({note->code, note->to, robot.now()});
+        if (sent_codes_.size() > 64) sent_codes_.pop_front();
       }
     if (std::get_if<AgentStarted>(&event) || std::get_if<AgentDied>(&event)) owed_codes_.clear();
   }
@@ -42,12 +42,12 @@ class Lock : public Rule {
   // A notification between the command and its answer, which may wait for the disk, counts.
   void owe(const RobotModel& robot, const RobotModel::Pending& asked, const char* code) {
     const Owed owed{code, robot.authority().holder, robot.now()};
-    const auto told = std::find_if(told_.begin(), told_.end(),
+    const auto sent = std::find_if(sent_codes_.begin(), sent_codes_.end(),
                                    [&](const Owed& t) { return t == owed && t.since >= asked.at; });
-    if (told == told_.end())
+    if (sent == sent_codes_.end())
       owed_codes_.push_back(owed);
     else
-      told_.erase(told);
+      sent_codes_.erase(sent);
   }
 
   void on_answer(const RobotModel& robot, const AckSent& ack, const ReportViolation& report_violation) {
@@ -83,7 +83,7 @@ class Lock : public Rule {
                        " s of its holder's silence");
   }
 
-  std::deque<Owed> owed_codes_{}, told_{};
+  std::deque<Owed> owed_codes_{}, sent_codes_{};
 };
 
 }  // namespace

@@ -150,19 +150,19 @@ class NoSurprise : public Rule {
       report_violation("its first velocity after a start was not zero");
     // Rule 8 judges get_out, which no operator requests.
     if (velocity.zero() || !robot.alive() || robot.mode() == "get_out") {
-      told_ = false;
+      reported_ = false;
       return;
     }
     // A velocity sent in the very instant in which motion was forbidden may have come before.
-    if (allowed_ || told_ || robot.mode_changed() == robot.now()) return;
+    if (allowed_ || reported_ || robot.mode_changed() == robot.now()) return;
     if (jumped_ && robot.now() - *jumped_ < kReaction) return;
     if (RobotModel::asked(robot.pending(), {Verb::go_to, Verb::mode, Verb::join}))
       return;  // its answer waits for the disk
-    told_ = true;
+    reported_ = true;
     report_violation("moved without a new request after " + why_not_);
   }
 
-  bool allowed_{}, told_{}, first_velocity_{};
+  bool allowed_{}, reported_{}, first_velocity_{};
   std::string why_not_{"a start of its agent"};
   Duration granted_at_{-1};
   std::optional<Duration> manual_must_end_{}, jumped_{};

@@ -37,8 +37,8 @@ class NothingLost : public Rule {
       return report_violation("'" + was.holder + "' held it before a restart, '" + now.authority.holder +
                               "' after it");
     const bool same = now.authority.holder == was.holder;
-    const bool told = asked(before, {Verb::lock, Verb::unlock, Verb::take, Verb::release, Verb::grant});
-    if (same && now.authority.locked != was.locked && !told && !before.lock_lapsed)
+    const bool requested = asked(before, {Verb::lock, Verb::unlock, Verb::take, Verb::release, Verb::grant});
+    if (same && now.authority.locked != was.locked && !requested && !before.lock_lapsed)
       report_violation(was.locked ? "its lock was lost in a restart" : "a restart locked it");
     if (now.authority.counter <= was.counter)
       report_violation("the counter of its epoch did not go on in a restart");
@@ -75,8 +75,8 @@ class NothingLost : public Rule {
       return;
     }
     if (before.disk_failed) return;
-    const bool told = asked(before, {Verb::go_to, Verb::mode});
-    if (before.behaviour.has_goal && !told && (!now.has_goal || now.goal_id != before.behaviour.goal_id))
+    const bool requested = asked(before, {Verb::go_to, Verb::mode});
+    if (before.behaviour.has_goal && !requested && (!now.has_goal || now.goal_id != before.behaviour.goal_id))
       report_violation("its goal was lost in a restart");
   }
 

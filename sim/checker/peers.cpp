@@ -12,7 +12,7 @@ namespace {
 /// A follower's predecessor was heard within this, and a reaction.
 constexpr Duration kPredecessorTimeout = 12s;
 /// A robot that made way stops when it was not asked for this long, and a reaction.
-constexpr Duration kAskKept = 5s;
+constexpr Duration kAskLifetime = 5s;
 
 /// Rule 8: peers need permission. A robot moves in convoy_follow only by a place in a convoy that its present
 /// holder gave it, and while it hears a robot that the holder named before it; in get_out only while its
@@ -60,13 +60,13 @@ class PeersNeedPermission : public Rule {
                    const ReportViolation& report_violation) {
     const bool clears = robot.alive() && robot.mode() == "get_out" && !sent.velocity.zero();
     if (!clears) {
-      yield_told_ = false;
+      yield_reported_ = false;
       return;
     }
     const bool pending = RobotModel::asked(robot.pending(), {Verb::yield, Verb::mode, Verb::go_to});
     const bool allowed = (yields_ && !asleep_) || pending;
-    const bool asked = asked_ && robot.age(*asked_) <= kAskKept + kReaction;
-    if ((allowed && asked) || std::exchange(yield_told_, true)) return;
+    const bool asked = asked_ && robot.age(*asked_) <= kAskLifetime + kReaction;
+    if ((allowed && asked) || std::exchange(yield_reported_, true)) return;
     report_violation(allowed ? "moved in get_out and no robot asks it to make way"
                              : "moved in get_out without the permission of its holder");
   }
@@ -81,7 +81,7 @@ class PeersNeedPermission : public Rule {
                    const ReportViolation& report_violation) {
     const bool follows = robot.alive() && robot.mode() == "convoy_follow" && !sent.velocity.zero();
     if (!follows) {
-      told_ = false;
+      follow_reported_ = false;
       return;
     }
     // The answer of an order that was just carried out may wait for the disk.
@@ -92,17 +92,17 @@ class PeersNeedPermission : public Rule {
       const auto heard = heard_.find(name);
       return heard != heard_.end() && robot.age(heard->second) <= kPredecessorTimeout + kReaction;
     });
-    if (hears || std::exchange(told_, true)) return;
+    if (hears || std::exchange(follow_reported_, true)) return;
     report_violation(ahead.empty() ? "moved in convoy_follow without a place that its holder gave it"
                                    : "moved in convoy_follow and hears no robot before it");
   }
 
   std::map<std::string, Duration> heard_{};  ///< Last beacon of each robot.
   std::vector<std::string> ahead_{};         ///< Robots before this one; empty: it has no place.
-  bool told_{};
+  bool follow_reported_{};
   bool yields_{}, asleep_{};         ///< Its holder's permission, which sleeps after a stop.
   std::optional<Duration> asked_{};  ///< A robot asked it last.
-  bool yield_told_{};
+  bool yield_reported_{};
 };
 
 }  // namespace

@@ -22,8 +22,8 @@ class StaleIsZero : public Rule {
  public:
   void on_event(const RobotModel& robot, const Event& event,
                 const ReportViolation& report_violation) override {
-    if (std::get_if<AgentStarted>(&event)) told_gap_ = told_mode_ = false;
-    if (std::get_if<AgentDied>(&event)) zero_after_death_ = told_death_ = false;
+    if (std::get_if<AgentStarted>(&event)) gap_reported_ = mode_reported_ = false;
+    if (std::get_if<AgentDied>(&event)) zero_after_death_ = death_reported_ = false;
     if (const auto* sent = std::get_if<VelocitySent>(&event))
       on_velocity(robot, sent->velocity, report_violation);
   }
@@ -32,12 +32,12 @@ class StaleIsZero : public Rule {
     if (robot.alive()) {
       const Duration last = std::max(robot.velocity_at(), robot.started() + kStartUp);
       const bool gap = robot.now() - last > (robot.disturbed() ? kLongestGapOfAFailure : kLongestGap);
-      if (gap && !told_gap_) report_violation("left its driver without a command for 120 ms");
-      told_gap_ = gap;
+      if (gap && !gap_reported_) report_violation("left its driver without a command for 120 ms");
+      gap_reported_ = gap;
       if (!robot.disturbed()) watch_mode(robot, report_violation);
-    } else if (robot.died() != Duration{} && !zero_after_death_ && !told_death_ &&
+    } else if (robot.died() != Duration{} && !zero_after_death_ && !death_reported_ &&
                robot.now() - robot.died() > kParentReaction) {
-      told_death_ = true;
+      death_reported_ = true;
       report_violation("no zero was sent when the agent died");
     }
   }
@@ -79,12 +79,12 @@ class StaleIsZero : public Rule {
     const Duration silence = robot.now() - std::max(source, robot.mode_changed());
     const bool overdue = (manual && silence > kStickRelease + 2 * kReaction) ||
                          (external && silence > kProgramSilence + 2 * kReaction);
-    if (overdue && !told_mode_)
+    if (overdue && !mode_reported_)
       report_violation("stays in " + robot.mode() + " without " + (external ? "its program" : "a joystick"));
-    told_mode_ = overdue;
+    mode_reported_ = overdue;
   }
 
-  bool told_gap_{}, told_mode_{}, told_death_{};
+  bool gap_reported_{}, mode_reported_{}, death_reported_{};
   bool zero_after_death_{true};
 };
 

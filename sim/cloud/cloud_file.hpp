@@ -12,7 +12,7 @@ namespace adit::sim {
 
 /// One cloud as it was written.
 struct CloudFile {
-  /// In the sensor's frame, m; points that are not finite are kept. Its stamp is 0. It has times if the file
+  /// In the sensor's frame, m; points that are not finite remain. Its stamp is 0. It has times if the file
   /// has a field for them, see perception::PointLayout.
   perception::Sweep sweep{};
   Pose3 viewpoint{};  ///< Where the sensor was (VIEWPOINT of a .pcd).

@@ -22,8 +22,8 @@ Result<std::vector<StampedPose>> read_tum(const std::filesystem::path& file) {
     std::array<double, 8> v{};
     for (double& value : v) words >> value;
     const Eigen::Quaterniond q(v[7], v[4], v[5], v[6]);
-    const bool whole = !words.fail() && (words >> std::ws).eof();
-    if (!whole || !std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); }) ||
+    const bool complete = !words.fail() && (words >> std::ws).eof();
+    if (!complete || !std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); }) ||
         q.norm() < 0.5 || q.norm() > 2.0)
       return {Reason::syntax, fmt::format("{}:{}: expected stamp x y z qx qy qz qw", file.string(), number)};
     poses.push_back({v[0], {{v[1], v[2], v[3]}, q.normalized()}});

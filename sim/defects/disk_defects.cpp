@@ -28,9 +28,9 @@ class ForgetsLock final : public DiskFilter {
 
 /// Reads an earlier state with a damaged byte in its last entry, as a program does that takes either every
 /// entry or none: it finds no entry.
-class LosesStateWhole final : public DiskFilter {
+class LosesAllState final : public DiskFilter {
  public:
-  explicit LosesStateWhole(const Subject& subject) : DiskFilter(subject.disk) {}
+  explicit LosesAllState(const Subject& subject) : DiskFilter(subject.disk) {}
   Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t max_bytes) const override {
     auto bytes = DiskFilter::on_read(name, max_bytes);
     if (name != agent::kStateFile || !bytes || !*bytes) return bytes;
@@ -101,7 +101,7 @@ Decoration epoch_kept_at_restart(const Subject& subject) {
 
 Decoration lock_forgotten(const Subject& subject) { return on_disk<ForgetsLock>(subject); }
 Decoration acknowledged_lost(const Subject& subject) { return on_disk<AcknowledgesEarly>(subject); }
-Decoration state_lost_whole(const Subject& subject) { return on_disk<LosesStateWhole>(subject); }
+Decoration state_lost_whole(const Subject& subject) { return on_disk<LosesAllState>(subject); }
 
 Decoration findings_deleted_at_start(const Subject& subject) {
   if (!subject.disk) return {};

@@ -46,20 +46,20 @@ class SmoothsJumps final : public Interceptor {
  private:
   void smooth(geometry_msgs::msg::Pose& pose) {
     constexpr double kJump = 0.5;  // m, rad: between two samples
-    const Pose2 told{pose.position().x(), pose.position().y(),
-                     2 * std::atan2(pose.orientation().z(), pose.orientation().w())};
-    if (last_told_ && ((told.position() - last_told_->position()).norm() > kJump ||
-                       std::fabs(wrap_angle(told.yaw - last_told_->yaw)) > kJump))
-      offset_ = last_given_ * told.inverse();
-    last_told_ = told;
-    last_given_ = offset_ * told;
+    const Pose2 reported{pose.position().x(), pose.position().y(),
+                         2 * std::atan2(pose.orientation().z(), pose.orientation().w())};
+    if (last_reported_ && ((reported.position() - last_reported_->position()).norm() > kJump ||
+                           std::fabs(wrap_angle(reported.yaw - last_reported_->yaw)) > kJump))
+      offset_ = last_given_ * reported.inverse();
+    last_reported_ = reported;
+    last_given_ = offset_ * reported;
     pose.position().x(last_given_.x);
     pose.position().y(last_given_.y);
     pose.orientation().z(std::sin(last_given_.yaw / 2));
     pose.orientation().w(std::cos(last_given_.yaw / 2));
   }
 
-  std::optional<Pose2> last_told_{};
+  std::optional<Pose2> last_reported_{};
   Pose2 last_given_{}, offset_{};
 };
 

@@ -67,7 +67,7 @@ inline constexpr std::uint64_t kDriveStart = 1'000'000'000'000;
 /// touches the world or a robot, or gets no farther.
 Result<void> drive(const DriveSpec& spec, DriveSink& sink);
 
-/// The same, kept in memory.
+/// The same, in memory.
 Result<DriveRecording> record_drive(const DriveSpec& spec);
 
 }  // namespace adit::sim

@@ -73,16 +73,16 @@ int route(const RouteOptions& options) {
   params.through_unknown = false;
   nav::RoutePlanner planner(*platform, params);
   const double begin = cpu_ms();
-  tell_world(*world, *platform, planner);
-  const double told = cpu_ms();
+  add_world(*world, *platform, planner);
+  const double added = cpu_ms();
   const nav::Route route = planner.plan(options.from, options.to);
   const double searched = cpu_ms();
   if (options.json)
-    std::printf("%s\n", json_of(route, planner, told - begin, searched - told).dump().c_str());
+    std::printf("%s\n", json_of(route, planner, added - begin, searched - added).dump().c_str());
   else if (route.found())
     std::printf(
         "%.2f m in %zu legs, %.2f m of it through unknown space; map %.0f ms, search %.2f ms, %.1f MB\n",
-        route.length, route.unknown.size(), route.unknown_length, told - begin, searched - told,
+        route.length, route.unknown.size(), route.unknown_length, added - begin, searched - added,
         static_cast<double>(planner.memory()) * 1e-6);
   else
     std::printf("no route: %s\n", route.status == nav::RouteStatus::start_blocked

@@ -33,7 +33,7 @@ void for_each_cell(const VoxelGrid& grid, int i, int j, const Use& use) {
 
 }  // namespace
 
-void tell_world(const World& world, const Platform& platform, nav::RoutePlanner& planner) {
+void add_world(const World& world, const Platform& platform, nav::RoutePlanner& planner) {
   const VoxelGrid& grid = world.grid();
   const double headroom = std::max(platform.height, platform.lidar_height);
   std::vector<double> here, there;

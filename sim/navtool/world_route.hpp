@@ -7,6 +7,6 @@ namespace adit::sim {
 
 /// Gives the global planner the complete world: the floors of each column that have headroom for the
 /// platform, and as obstacles what stands beside them.
-void tell_world(const World& world, const Platform& platform, nav::RoutePlanner& planner);
+void add_world(const World& world, const Platform& platform, nav::RoutePlanner& planner);
 
 }  // namespace adit::sim

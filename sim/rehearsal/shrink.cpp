@@ -17,9 +17,9 @@ constexpr Duration kAfterFailure{500ms};
 constexpr Duration kShortestWindow{100ms};
 
 template <class T>
-std::vector<T> only(const std::vector<T>& all, const Indices& kept) {
+std::vector<T> only(const std::vector<T>& all, const Indices& remaining) {
   std::vector<T> out;
-  for (std::size_t i : kept) out.push_back(all[i]);
+  for (std::size_t i : remaining) out.push_back(all[i]);
   return out;
 }
 
@@ -68,17 +68,17 @@ class Shrinking {
 
   void faults() {
     const Scenario all = result_.scenario;
-    const Fails fails = [&](const Indices& kept) {
+    const Fails fails = [&](const Indices& remaining) {
       Scenario candidate = all;
-      candidate.faults = only(all.faults, kept);
+      candidate.faults = only(all.faults, remaining);
       return take(std::move(candidate), "faults");
     };
     // What fails becomes the result at once: the last that fails is the smallest.
     ddmin(all.faults.size(), fails);
     const Scenario less = result_.scenario;
-    const Fails smaller = [&](const Indices& kept) {
+    const Fails smaller = [&](const Indices& remaining) {
       Scenario candidate = all;
-      candidate.faults = only(all.faults, kept);
+      candidate.faults = only(all.faults, remaining);
       candidate.script = less.script;
       return take(std::move(candidate), "fewer faults");
     };
@@ -87,9 +87,9 @@ class Shrinking {
 
   void script() {
     const Scenario all = result_.scenario;
-    ddmin(all.script.size(), [&](const Indices& kept) {
+    ddmin(all.script.size(), [&](const Indices& remaining) {
       Scenario candidate = all;
-      candidate.script = only(all.script, kept);
+      candidate.script = only(all.script, remaining);
       return take(std::move(candidate), "commands");
     });
   }

@@ -92,7 +92,7 @@ void Witness::sent(const wire::SampleEvent& frame) {
     said.authority = status->authority;
   }
   if (const auto* notice = std::get_if<NotificationSent>(&decoded->event)) {
-    if (told_.size() < kMaxEvents) told_.insert({notice->to, notice->code, robot});
+    if (notified_.size() < kMaxEvents) notified_.insert({notice->to, notice->code, robot});
     if (notifications_.size() < kMaxEvents) notifications_.push_back({frame.at, robot, notice->code});
     if (notice->code == "unreachable") note(robot, frame.at, "no way to its goal");
   }

@@ -70,7 +70,7 @@ class Witness {
   const std::vector<TimedEvent>& notifications() const { return notifications_; }
   /// Whether a robot notified that operator, or all of them, of a matter.
   bool notified(const std::string& by, const std::string& code, const std::string& robot) const {
-    return told_.contains({by, code, robot}) || told_.contains({{}, code, robot});
+    return notified_.contains({by, code, robot}) || notified_.contains({{}, code, robot});
   }
   std::string digest() const { return digest_.text(); }
 
@@ -97,7 +97,7 @@ class Witness {
   CommandResult commands_{};
   std::vector<Goal> goals_{};
   std::vector<TimedEvent> events_{}, notifications_{};
-  std::set<std::tuple<std::string, std::string, std::string>> told_{};  ///< Operator, code, robot.
+  std::set<std::tuple<std::string, std::string, std::string>> notified_{};  ///< Operator, code, robot.
   Digest digest_{};
 };
 

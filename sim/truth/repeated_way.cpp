@@ -39,7 +39,7 @@ void RepeatedWay::add(std::size_t robot, double time_s, const Eigen::Vector2d& p
     metres_ += way;
     if (way > 0 && was_here(position, time_s - kOld)) repeated_ += way;
     track->now = position;
-    if ((position - track->kept).norm() < kApart) return;
+    if ((position - track->recorded).norm() < kApart) return;
   }
   places_[key_of(square_of(position))].push_back({position, time_s});
   track = Track{position, position};

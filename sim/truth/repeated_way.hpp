@@ -29,9 +29,9 @@ class RepeatedWay {
     Eigen::Vector2d position;
     double time_s;
   };
-  static constexpr double kApart = 0.25;  ///< Between the places that are kept of a track, m.
+  static constexpr double kApart = 0.25;  ///< Distance between the recorded places of a track, m.
   struct Track {
-    Eigen::Vector2d now, kept;
+    Eigen::Vector2d now, recorded;
   };
   bool was_here(const Eigen::Vector2d& position, double before_s) const;
 

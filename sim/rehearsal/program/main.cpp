@@ -68,7 +68,7 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
               static_cast<unsigned long long>(report.commands.sent),
               static_cast<unsigned long long>(report.commands.accepted),
               static_cast<unsigned long long>(report.commands.refused));
-  tell_complaints(report);
+  print_complaints(report);
   if (!report_file.empty())
     if (auto written = write_json(report, report_file); !written)
       return report_error("rehearse", written.error());

@@ -29,7 +29,7 @@ class Table {
                 static_cast<unsigned long long>(r.commands.accepted),
                 static_cast<unsigned long long>(r.commands.refused),
                 static_cast<unsigned long long>(r.fault_count()), r.virtual_s / r.wall_s, r.digest.c_str());
-    tell_complaints(r);
+    print_complaints(r);
     const bool first = out_.done == 0;
     out_.fewest_commands = first ? r.commands.sent : std::min(out_.fewest_commands, r.commands.sent);
     out_.fewest_faults = first ? r.fault_count() : std::min(out_.fewest_faults, r.fault_count());
@@ -54,7 +54,7 @@ class Table {
 
 }  // namespace
 
-void tell_complaints(const RunReport& report) {
+void print_complaints(const RunReport& report) {
   for (const std::string& line : report.complaints())
     std::fprintf(stderr, "seed %llu: %s\n", static_cast<unsigned long long>(report.seed), line.c_str());
 }

@@ -24,6 +24,6 @@ SeedsOutcome run_seeds(const Scenario& scenario, const std::shared_ptr<const Wor
                        const RunParams& params, const SeedRange& seeds, bool until_failure);
 
 /// One line on stderr for each thing that failed.
-void tell_complaints(const RunReport& report);
+void print_complaints(const RunReport& report);
 
 }  // namespace adit::sim

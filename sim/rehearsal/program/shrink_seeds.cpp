@@ -29,11 +29,11 @@ Result<void> write(const std::string& text, const std::string& file) {
   return {};
 }
 
-Result<void> shrink_one(const Scenario& whole, const Failure& failure, const RunScenario& run,
+Result<void> shrink_one(const Scenario& scenario, const Failure& failure, const RunScenario& run,
                         const std::string& file) {
   const bool tty = isatty(STDERR_FILENO) == 1;
   std::printf("shrinking seed %llu (%zu faults, %zu commands): %s\n",
-              static_cast<unsigned long long>(whole.seed), whole.faults.size(), whole.script.size(),
+              static_cast<unsigned long long>(scenario.seed), scenario.faults.size(), scenario.script.size(),
               failure.text.c_str());
   ShrinkParams params;
   params.stop = interrupted;
@@ -41,9 +41,9 @@ Result<void> shrink_one(const Scenario& whole, const Failure& failure, const Run
     params.progress = [](const std::string& what, std::size_t runs) {
       std::fprintf(stderr, "\rrun %zu: %s          ", runs, what.c_str());
     };
-  const ShrinkResult small = shrink(whole, failure, run, params);
+  const ShrinkResult small = shrink(scenario, failure, run, params);
   if (tty) std::fprintf(stderr, "\r                              \r");
-  const std::string to = file.empty() ? default_name(whole, failure) : file;
+  const std::string to = file.empty() ? default_name(scenario, failure) : file;
   const auto text = to_text(small.scenario, small.failure, to);
   if (!text) return text.error();
   if (auto written = write(*text, to); !written) return written;
