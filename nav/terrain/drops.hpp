@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "nav/terrain/ground_grid.hpp"
+#include "nav/terrain/lidar_range_image.hpp"
 #include "nav/terrain/terrain_params.hpp"
 #include "nav/terrain/view.hpp"
 

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "nav/terrain/lidar_range_image.hpp"
+#include "core/geometry/round_down.hpp"
 #include "nav/terrain/plane_fit.hpp"
 
 namespace adit::nav {
@@ -139,7 +139,7 @@ class GroundGrid {
   };
   static constexpr float kNothing = 1e9f;
 
-  static int cell(float v) { return floor_int(v * (1.0f / kCell)); }
+  static int cell(float v) { return round_down(v * (1.0f / kCell)); }
   std::size_t slot(int ix, int iy) const {
     return static_cast<std::size_t>(((ix & mask_) << bits_) | (iy & mask_));
   }

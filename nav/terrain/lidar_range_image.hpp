@@ -8,13 +8,6 @@
 
 namespace adit::nav {
 
-/// Rounds down. Without SSE 4.1, which the build does not assume, std::floor is a function call, and this
-/// runs for every point.
-inline int floor_int(float v) {
-  const int i = static_cast<int>(v);
-  return i - (v < static_cast<float>(i));
-}
-
 /// Range image of one scan: the shortest range in each direction of the lidar; space before it is free.
 /// Directions are binned by the diamond angle of their bearing and by the tangent of the elevation. A bin
 /// stores its shortest range, so a ray that ended near wins over one that slipped past.

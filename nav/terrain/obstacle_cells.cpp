@@ -86,7 +86,7 @@ bool ObstacleCells::stray(const Entry& entry, float dx, float dy, float range) c
   if (entry.hits >= kMany || range < 0.05f) return false;
   for (int further = 1; further <= 2; ++further) {
     const float along = static_cast<float>(further) / range;
-    const int ix = entry.ix + floor_int(along * dx + 0.5f), iy = entry.iy + floor_int(along * dy + 0.5f);
+    const int ix = entry.ix + round_down(along * dx + 0.5f), iy = entry.iy + round_down(along * dy + 0.5f);
     const std::uint32_t index = slots_[slot(ix, iy)];
     if (index == 0) continue;
     const Entry& behind = entries_[index - 1u];

@@ -6,6 +6,7 @@
 
 #include "nav/geometry/footprint.hpp"
 #include "nav/terrain/ground_grid.hpp"
+#include "nav/terrain/lidar_range_image.hpp"
 #include "nav/terrain/terrain_params.hpp"
 #include "nav/terrain/view.hpp"
 
@@ -55,7 +56,7 @@ class ObstacleCells {
   std::size_t max_cells() const { return max_cells_; }
 
  private:
-  static int cell(float v) { return floor_int(v * (1.0f / kCell)); }
+  static int cell(float v) { return round_down(v * (1.0f / kCell)); }
   std::size_t slot(int ix, int iy) const {
     return static_cast<std::size_t>(((ix & mask_) << bits_) | (iy & mask_));
   }

@@ -118,11 +118,11 @@ TEST(GroundGrid, TellsByHowMuchAScanLiesBesideTheMap) {
   EXPECT_EQ(grid.disagreement().height, 0.0f);
 }
 
-TEST(FloorInt, RoundsDownOnBothSides) {
-  EXPECT_EQ(floor_int(1.9f), 1);
-  EXPECT_EQ(floor_int(-0.1f), -1);
-  EXPECT_EQ(floor_int(-3.0f), -3);
-  EXPECT_EQ(floor_int(0.0f), 0);
+TEST(RoundDown, RoundsDownOnBothSides) {
+  EXPECT_EQ(round_down(1.9f), 1);
+  EXPECT_EQ(round_down(-0.1f), -1);
+  EXPECT_EQ(round_down(-3.0f), -3);
+  EXPECT_EQ(round_down(0.0f), 0);
 }
 
 // The side of a ramp of low steps: passable at its foot, too high from x = 0.5 m on.
