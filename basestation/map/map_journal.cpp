@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "core/checksum/crc32c.hpp"
+#include "core/store/crc32c.hpp"
 #include "core/store/pack.hpp"
 #include "core/store/preserve.hpp"
 #include "core/transfer/piece.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/checksum/crc32c.hpp"
+#include "core/store/crc32c.hpp"
 #include "core/store/pack.hpp"
 
 namespace adit::store {

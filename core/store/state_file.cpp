@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/checksum/crc32c.hpp"
+#include "core/store/crc32c.hpp"
 #include "core/store/pack.hpp"
 
 namespace adit::store {

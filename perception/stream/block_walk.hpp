@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/checksum/crc32c.hpp"
+#include "core/store/crc32c.hpp"
 #include "perception/map/block_hash.hpp"
 #include "perception/stream/block_coder.hpp"
 #include "perception/stream/block_context.hpp"

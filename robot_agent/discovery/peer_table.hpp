@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/topic/local_topic.hpp"
+#include "core/component/local_topic.hpp"
 #include "robot_agent/common/identity.hpp"
 #include "robot_agent/team/beacon.hpp"
 

@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "core/component/component.hpp"
+#include "core/component/local_topic.hpp"
 #include "core/exec/fault.hpp"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/supervisor/unit.hpp"
-#include "core/topic/local_topic.hpp"
 
 namespace adit {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <stdexcept>
 
+#include "core/component/local_topic.hpp"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/supervisor/unit.hpp"
-#include "core/topic/local_topic.hpp"
 
 namespace adit {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "core/checksum/crc32c.hpp"
+#include "core/store/crc32c.hpp"
 #include "core/store/pack.hpp"
 #include "core/time/random.hpp"
 #include "tests/findings/some.hpp"

@@ -3,8 +3,8 @@
 // piece gets a correct checksum.
 #include <cstdlib>
 
-#include "core/checksum/crc32c.hpp"
 #include "core/findings/finding_piece.hpp"
+#include "core/store/crc32c.hpp"
 
 using namespace adit;
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/checksum/crc32c.hpp"
+#include "core/store/crc32c.hpp"
 #include "core/time/random.hpp"
 #include "tests/store/scratch_folder.hpp"
 

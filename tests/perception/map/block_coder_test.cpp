@@ -12,7 +12,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/checksum/crc32c.hpp"
+#include "core/store/crc32c.hpp"
 #include "perception/map/export/octree_file.hpp"
 #include "perception/stream/block_context.hpp"
 #include "perception/stream/block_tables.hpp"

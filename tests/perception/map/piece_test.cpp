@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include "core/checksum/crc32c.hpp"
+#include "core/store/crc32c.hpp"
 #include "perception/map/submap_grid.hpp"
 
 namespace adit::perception {
