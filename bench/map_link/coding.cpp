@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "bench/nav/calibration.hpp"
+#include "core/store/pack.hpp"
 #include "perception/map/export/octree_file.hpp"
 #include "perception/stream/block_coder.hpp"
-#include "perception/stream/byte_stream.hpp"
 #include "perception/stream/piece.hpp"
 
 namespace adit::bench {
@@ -35,17 +35,15 @@ std::size_t compressed(std::span<const std::uint8_t> content, int level) {
 
 /// Content of a piece of the former format.
 std::vector<std::uint8_t> former_content(std::span<const perception::CoarseBlock> blocks) {
-  perception::ByteWriter head, shapes, known, occupied;
+  store::Packer head, shapes, known, occupied;
   perception::BlockIndex before{};
   const auto by_columns = [](std::uint64_t mask) {
     std::uint64_t out = 0;
     for (int i = 0; i < 64; ++i) out |= (mask >> i & 1) << ((i >> 4) | (i & 3) << 4 | (i >> 2 & 3) << 2);
     return out;
   };
-  head.text("wheeled_1");
-  head.u64(0x0123456789abcdefu);
-  head.varint(7);
-  head.u8(static_cast<std::uint8_t>(blocks.size()));
+  head.text<std::uint8_t>("wheeled_1").put(std::uint64_t{0x0123456789abcdefu}).varint(7);
+  head.put(static_cast<std::uint8_t>(blocks.size()));
   for (const perception::CoarseBlock& b : blocks) {
     head.zigzag(b.index.x - before.x);
     head.zigzag(b.index.y - before.y);
@@ -53,9 +51,9 @@ std::vector<std::uint8_t> former_content(std::span<const perception::CoarseBlock
     head.zigzag(1);  // Revisions that rise by one.
     before = b.index;
     const bool full = b.known == ~std::uint64_t{0}, free = b.occupied == 0;
-    shapes.u8(static_cast<std::uint8_t>((full ? 1 : 0) | (free ? 2 : 0)));
-    if (!full) known.u64(by_columns(b.known));
-    if (!free) occupied.u64(by_columns(b.occupied));
+    shapes.put(static_cast<std::uint8_t>((full ? 1 : 0) | (free ? 2 : 0)));
+    if (!full) known.put(by_columns(b.known));
+    if (!free) occupied.put(by_columns(b.occupied));
   }
   std::vector<std::uint8_t> out = head.bytes();
   for (const auto* part : {&shapes, &known, &occupied})
@@ -66,8 +64,8 @@ std::vector<std::uint8_t> former_content(std::span<const perception::CoarseBlock
 }  // namespace
 
 std::size_t on_air(std::size_t bytes) {
-  const std::size_t whole = perception::kMaxPieceBytes;
-  return bytes + (bytes + whole - 1) / whole * kHeaders;
+  const std::size_t piece = perception::kMaxPieceBytes;
+  return bytes + (bytes + piece - 1) / piece * kHeaders;
 }
 
 std::size_t Coded::on_air() const { return bytes + pieces * kHeaders; }

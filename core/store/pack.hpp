@@ -4,6 +4,7 @@
 #include <bit>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,10 +25,20 @@ class Packer {
   Packer& put(bool value) = delete;  // Use flag().
   Packer& flag(bool value) { return put(static_cast<std::uint8_t>(value ? 1 : 0)); }
   Packer& put(double value) { return put(std::bit_cast<std::uint64_t>(value)); }
-  /// Writes at most 65535 bytes of the text.
+  /// Writes seven bits a byte, the lowest first (LEB128): small numbers are short.
+  Packer& varint(std::uint64_t value) {
+    for (; value >= 0x80; value >>= 7) put(static_cast<std::uint8_t>(value | 0x80));
+    return put(static_cast<std::uint8_t>(value));
+  }
+  /// Writes a varint in which numbers near zero of both signs are short.
+  Packer& zigzag(std::int64_t value) {
+    return varint(static_cast<std::uint64_t>(value) << 1 ^ static_cast<std::uint64_t>(value >> 63));
+  }
+  /// Writes the text after its length, cut off at the largest Length.
+  template <std::unsigned_integral Length = std::uint16_t>
   Packer& text(std::string_view value) {
-    value = value.substr(0, 0xffff);
-    put(static_cast<std::uint16_t>(value.size()));
+    value = value.substr(0, std::numeric_limits<Length>::max());
+    put(static_cast<Length>(value.size()));
     bytes_.insert(bytes_.end(), value.begin(), value.end());
     return *this;
   }
@@ -66,9 +77,24 @@ class Unpacker {
     return value == 1;
   }
   double number() { return std::bit_cast<double>(get<std::uint64_t>()); }
+  std::uint64_t varint() {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 64; shift += 7) {
+      const auto byte = get<std::uint8_t>();
+      value |= std::uint64_t{byte & 0x7fu} << shift;
+      if ((byte & 0x80u) == 0) return good_ ? value : 0;
+    }
+    good_ = false;
+    return 0;
+  }
+  std::int64_t zigzag() {
+    const std::uint64_t value = varint();
+    return static_cast<std::int64_t>(value >> 1 ^ (~(value & 1) + 1));
+  }
   /// A text longer than `max` fails.
+  template <std::unsigned_integral Length = std::uint16_t>
   std::string text(std::size_t max) {
-    const auto size = get<std::uint16_t>();
+    const auto size = get<Length>();
     if (size > max) good_ = false;
     const auto part = take(size);
     return {part.begin(), part.end()};

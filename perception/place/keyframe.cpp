@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "perception/place/keyframe.hpp"
 
-#include <bit>
 #include <cmath>
 
-#include "perception/stream/byte_stream.hpp"
+#include "core/store/pack.hpp"
 #include "perception/voxel/thin.hpp"
 
 namespace adit::perception {
@@ -32,11 +31,11 @@ Keyframe make_keyframe(std::span<const Eigen::Vector3f> points, const Pose3& T_o
 }
 
 std::vector<std::uint8_t> encode(const Keyframe& keyframe) {
-  ByteWriter out;
-  out.u32(keyframe.odom_epoch);
+  store::Packer out;
+  out.put(keyframe.odom_epoch);
   const Pose3& pose = keyframe.T_odom_base;
-  for (int axis = 0; axis < 3; ++axis) out.u64(std::bit_cast<std::uint64_t>(pose.position[axis]));
-  for (int part = 0; part < 4; ++part) out.u64(std::bit_cast<std::uint64_t>(pose.orientation.coeffs()[part]));
+  for (int axis = 0; axis < 3; ++axis) out.put(pose.position[axis]);
+  for (int part = 0; part < 4; ++part) out.put(pose.orientation.coeffs()[part]);
   out.varint(keyframe.points.size());
   for (const Eigen::Vector3f& p : keyframe.points)
     for (int axis = 0; axis < 3; ++axis) out.zigzag(packed(p[axis]));
@@ -44,15 +43,14 @@ std::vector<std::uint8_t> encode(const Keyframe& keyframe) {
 }
 
 Result<Keyframe> decode_keyframe(std::span<const std::uint8_t> bytes) {
-  ByteReader in(bytes);
+  store::Unpacker in(bytes);
   Keyframe keyframe;
-  keyframe.odom_epoch = in.u32();
-  for (int axis = 0; axis < 3; ++axis) keyframe.T_odom_base.position[axis] = std::bit_cast<double>(in.u64());
-  for (int part = 0; part < 4; ++part)
-    keyframe.T_odom_base.orientation.coeffs()[part] = std::bit_cast<double>(in.u64());
+  keyframe.odom_epoch = in.get<std::uint32_t>();
+  for (int axis = 0; axis < 3; ++axis) keyframe.T_odom_base.position[axis] = in.number();
+  for (int part = 0; part < 4; ++part) keyframe.T_odom_base.orientation.coeffs()[part] = in.number();
   const std::uint64_t count = in.varint();
   if (count > Keyframe::kMaxPoints) return Error{Reason::malformed, "a keyframe has fewer points"};
-  for (std::uint64_t left = count; left > 0 && !in.failed(); --left) {
+  for (std::uint64_t left = count; left > 0 && in.good(); --left) {
     Eigen::Vector3f point;
     for (int axis = 0; axis < 3; ++axis) point[axis] = unpacked(in.zigzag());
     if (!(point.cwiseAbs().maxCoeff() <= Keyframe::kReach))
@@ -61,8 +59,7 @@ Result<Keyframe> decode_keyframe(std::span<const std::uint8_t> bytes) {
   }
   const Pose3& pose = keyframe.T_odom_base;
   constexpr double kFarthest = 1e5;  // m
-  if (in.failed() || !in.at_end() || !(pose.position.norm() < kFarthest) ||
-      !(std::fabs(pose.orientation.norm() - 1.0) < 1e-3))
+  if (!in.done() || !(pose.position.norm() < kFarthest) || !(std::fabs(pose.orientation.norm() - 1.0) < 1e-3))
     return Error{Reason::malformed, "it is no keyframe"};
   return keyframe;
 }

@@ -11,10 +11,10 @@
 #include <tuple>
 
 #include "core/store/crc32c.hpp"
+#include "core/store/pack.hpp"
 #include "perception/map/block_hash.hpp"
 #include "perception/stream/block_coder.hpp"
 #include "perception/stream/block_context.hpp"
-#include "perception/stream/byte_stream.hpp"
 
 namespace adit::perception {
 namespace {
@@ -29,15 +29,14 @@ constexpr int kVoxelLevel = 2;  // Of the voxels of 0.2 m.
 constexpr double kPositionUnit = 1e-3, kQuaternionUnit = 1e-5;
 constexpr double kMaxPosition = 1e5;  ///< m
 
-void write_key(ByteWriter& to, const SubmapKey& key) {
-  to.text(std::string_view(key.robot).substr(0, kMaxRobotName));
-  to.u64(key.start);
+void write_key(store::Packer& to, const SubmapKey& key) {
+  to.text<std::uint8_t>(std::string_view(key.robot).substr(0, kMaxRobotName)).put(key.start);
 }
 
-bool read_name(ByteReader& from, SubmapKey& key) {
-  key.robot = from.text();
-  key.start = from.u64();
-  return !key.robot.empty() && key.robot.size() <= kMaxRobotName;
+bool read_name(store::Unpacker& from, SubmapKey& key) {
+  key.robot = from.text<std::uint8_t>(kMaxRobotName);
+  key.start = from.get<std::uint64_t>();
+  return !key.robot.empty();
 }
 
 std::vector<std::uint8_t> compress(std::uint8_t kind, std::span<const std::uint8_t> content) {
@@ -126,10 +125,8 @@ std::vector<std::uint8_t> encode_blocks(const SubmapKey& key, std::span<const Bl
     for (std::size_t i = 0; i < order.size(); ++i)
       (*bits)[order[i]] = taken[i] + static_cast<std::uint32_t>(width);
   }
-  ByteWriter out;
-  out.u8(kVersion);
-  out.u8(kBlocksKind);
-  out.u32(0);
+  store::Packer out;
+  out.put(kVersion).put(kBlocksKind).put(std::uint32_t{0});
   write_key(out, key);
   std::vector<std::uint8_t> bytes = out.bytes();
   const std::vector<std::uint8_t> coded = encoder.finish();
@@ -156,12 +153,12 @@ Result<MapPiece> decode(std::span<const std::uint8_t> bytes, const FindStored& f
     return {Reason::malformed, "a piece of the map is of another kind, or too long"};
   if (bytes[1] != kBlocksKind)
     return {Reason::wrong_protocol, "a piece of the map was coded with other tables"};
-  ByteReader from(bytes.subspan(kHeader));
-  const std::uint32_t sum = from.u32();
+  store::Unpacker from(bytes.subspan(kHeader));
+  const auto sum = from.get<std::uint32_t>();
   if (sum != checksum(bytes)) return malformed("damaged");
   MapPiece piece;
-  if (!read_name(from, piece.key) || from.failed()) return malformed("the robot's name");
-  RangeDecoder decoder(bytes.last(from.left()));
+  if (!read_name(from, piece.key) || !from.good()) return malformed("the robot's name");
+  RangeDecoder decoder(from.rest());
   piece.key.index = read_wide(decoder);
   const std::uint32_t newest = read_wide(decoder);
   const int width = static_cast<int>(decoder.bits(6));
@@ -215,17 +212,16 @@ PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std:
 std::vector<std::uint8_t> encode(const SubmapPoses& poses) {
   const std::span<const SubmapPose> sent =
       std::span(poses.poses).first(std::min(poses.poses.size(), kMaxPiecePoses));
-  ByteWriter out;
-  out.u8(static_cast<std::uint8_t>(sent.size()));
+  store::Packer out;
+  out.put(static_cast<std::uint8_t>(sent.size()));
   const SubmapPose* before = nullptr;
   for (const SubmapPose& pose : sent) {
     const bool same =
         before != nullptr && before->key.robot == pose.key.robot && before->key.start == pose.key.start;
-    out.u8(same ? 1 : 0);
+    out.flag(same);
     if (!same) write_key(out, pose.key);
     before = &pose;
-    out.varint(pose.key.index);
-    out.varint(pose.revision);
+    out.varint(pose.key.index).varint(pose.revision);
     for (int axis = 0; axis < 3; ++axis)
       out.zigzag(std::llround(std::clamp(pose.T_map_submap.position[axis], -kMaxPosition, kMaxPosition) /
                               kPositionUnit));
@@ -251,13 +247,13 @@ std::vector<std::uint8_t> pack(SubmapPoses& poses, std::size_t max_bytes) {
 Result<SubmapPoses> decode_poses(std::span<const std::uint8_t> bytes) {
   const auto content = unpack(kPoses, bytes);
   if (!content) return content.error();
-  ByteReader from(*content);
+  store::Unpacker from(*content);
   SubmapPoses out;
-  const std::size_t count = from.u8();
+  const std::size_t count = from.get<std::uint8_t>();
   if (count > kMaxPiecePoses) return malformed("too many poses");
   for (std::size_t i = 0; i < count; ++i) {
     SubmapPose pose;
-    const std::uint8_t same = from.u8();
+    const auto same = from.get<std::uint8_t>();
     if (same > 1 || (same == 1 && i == 0)) return malformed("a pose's submap");
     if (same == 1) {
       pose.key = out.poses.back().key;
@@ -276,10 +272,10 @@ Result<SubmapPoses> decode_poses(std::span<const std::uint8_t> bytes) {
       return malformed("a pose's values");
     pose.T_map_submap.orientation =
         Eigen::Quaterniond(std::sqrt(std::max(0.0, 1.0 - q.squaredNorm())), q.x(), q.y(), q.z()).normalized();
-    if (from.failed()) return malformed("its length");
+    if (!from.good()) return malformed("its length");
     out.poses.push_back(std::move(pose));
   }
-  if (!from.at_end()) return malformed("its length");
+  if (!from.done()) return malformed("its length");
   return out;
 }
 

@@ -4,13 +4,12 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <memory>
 #include <string>
 
+#include "core/store/pack.hpp"
 #include "perception/map/block_hash.hpp"
-#include "perception/stream/byte_stream.hpp"
 
 namespace adit::perception {
 namespace {
@@ -19,7 +18,7 @@ constexpr int kStoredLevel = 3;
 constexpr double kFarthest = 1e6;  // m
 constexpr std::int32_t kFarthestBlock = 1'000'000'000;
 
-std::vector<std::uint8_t> packed_for_disk(const ByteWriter& content) {
+std::vector<std::uint8_t> packed_for_disk(const store::Packer& content) {
   const std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context(ZSTD_createCCtx(), ZSTD_freeCCtx);
   std::vector<std::uint8_t> out(ZSTD_compressBound(content.bytes().size()));
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kStoredLevel);
@@ -40,18 +39,15 @@ Result<std::vector<std::uint8_t>> unpacked_from_disk(std::span<const std::uint8_
   return content;
 }
 
-void write_number(ByteWriter& to, double value) { to.u64(std::bit_cast<std::uint64_t>(value)); }
-double read_number(ByteReader& from) { return std::bit_cast<double>(from.u64()); }
-
-void write_pose(ByteWriter& to, const Pose3& pose) {
-  for (int axis = 0; axis < 3; ++axis) write_number(to, pose.position[axis]);
+void write_pose(store::Packer& to, const Pose3& pose) {
+  for (int axis = 0; axis < 3; ++axis) to.put(pose.position[axis]);
   const Eigen::Quaterniond& q = pose.orientation;
-  for (const double part : {q.w(), q.x(), q.y(), q.z()}) write_number(to, part);
+  for (const double part : {q.w(), q.x(), q.y(), q.z()}) to.put(part);
 }
 
-bool read_pose(ByteReader& from, Pose3& pose) {
-  for (int axis = 0; axis < 3; ++axis) pose.position[axis] = read_number(from);
-  const double w = read_number(from), x = read_number(from), y = read_number(from), z = read_number(from);
+bool read_pose(store::Unpacker& from, Pose3& pose) {
+  for (int axis = 0; axis < 3; ++axis) pose.position[axis] = from.number();
+  const double w = from.number(), x = from.number(), y = from.number(), z = from.number();
   const Eigen::Quaterniond q(w, x, y, z);
   if (!pose.position.allFinite() || pose.position.cwiseAbs().maxCoeff() > kFarthest ||
       !q.coeffs().allFinite() || std::abs(q.norm() - 1.0) > 1e-3)
@@ -60,20 +56,18 @@ bool read_pose(ByteReader& from, Pose3& pose) {
   return true;
 }
 
-void write_submap_key(ByteWriter& to, const SubmapKey& key) {
-  to.text(std::string_view(key.robot).substr(0, kMaxRobotName));
-  to.u64(key.start);
-  to.u32(key.index);
+void write_submap_key(store::Packer& to, const SubmapKey& key) {
+  to.text<std::uint8_t>(std::string_view(key.robot).substr(0, kMaxRobotName)).put(key.start).put(key.index);
 }
 
-bool read_submap_key(ByteReader& from, SubmapKey& key) {
-  key.robot = from.text();
-  key.start = from.u64();
-  key.index = from.u32();
-  return !key.robot.empty() && key.robot.size() <= kMaxRobotName;
+bool read_submap_key(store::Unpacker& from, SubmapKey& key) {
+  key.robot = from.text<std::uint8_t>(kMaxRobotName);
+  key.start = from.get<std::uint64_t>();
+  key.index = from.get<std::uint32_t>();
+  return !key.robot.empty();
 }
 
-bool read_index(ByteReader& from, BlockIndex& last, bool bounded) {
+bool read_index(store::Unpacker& from, BlockIndex& last, bool bounded) {
   std::array<std::int64_t, 3> part{last.x, last.y, last.z};
   for (std::int64_t& value : part) {
     const std::int64_t step = from.zigzag();
@@ -86,7 +80,7 @@ bool read_index(ByteReader& from, BlockIndex& last, bool bounded) {
   return !bounded || is_within_limit(last);
 }
 
-void write_index(ByteWriter& to, const BlockIndex& index, const BlockIndex& last) {
+void write_index(store::Packer& to, const BlockIndex& index, const BlockIndex& last) {
   to.zigzag(std::int64_t{index.x} - last.x);
   to.zigzag(std::int64_t{index.y} - last.y);
   to.zigzag(std::int64_t{index.z} - last.z);
@@ -97,12 +91,10 @@ Error wrong(const char* what) { return {Reason::malformed, std::string("its ") +
 }  // namespace
 
 std::vector<std::uint8_t> encode_stored(const StoredSubmap& submap) {
-  ByteWriter out;
+  store::Packer out;
   write_submap_key(out, submap.key);
   write_pose(out, submap.T_map_submap);
-  out.u8(submap.placed ? 1 : 0);
-  out.u32(submap.pose_revision);
-  out.u32(submap.odom_epoch);
+  out.flag(submap.placed).put(submap.pose_revision).put(submap.odom_epoch);
   write_index(out, submap.offset, {});
   const std::size_t count = std::min(submap.blocks.size(), kMaxStoredBlocks);
   out.varint(count);
@@ -115,28 +107,28 @@ std::vector<std::uint8_t> encode_stored(const StoredSubmap& submap) {
     last = update.block.index;
     revision = update.revision;
   }
-  for (std::size_t i = 0; i < count; ++i) out.u64(submap.blocks[i].block.known);
-  for (std::size_t i = 0; i < count; ++i) out.u64(submap.blocks[i].block.occupied);
+  for (std::size_t i = 0; i < count; ++i) out.put(submap.blocks[i].block.known);
+  for (std::size_t i = 0; i < count; ++i) out.put(submap.blocks[i].block.occupied);
   return packed_for_disk(out);
 }
 
 Result<StoredSubmap> decode_stored_submap(std::span<const std::uint8_t> bytes) {
   const auto content = unpacked_from_disk(bytes);
   if (!content) return content.error();
-  ByteReader from(*content);
+  store::Unpacker from(*content);
   StoredSubmap out;
   if (!read_submap_key(from, out.key)) return wrong("name");
   if (!read_pose(from, out.T_map_submap)) return wrong("pose");
-  const std::uint8_t placed = from.u8();
+  const auto placed = from.get<std::uint8_t>();
   out.placed = placed == 1;
-  out.pose_revision = from.u32();
-  out.odom_epoch = from.u32();
+  out.pose_revision = from.get<std::uint32_t>();
+  out.odom_epoch = from.get<std::uint32_t>();
   if (placed > 1 || !read_index(from, out.offset, false)) return wrong("place");
   for (const std::int32_t part : {out.offset.x, out.offset.y, out.offset.z})
     if (part > kFarthestBlock || part < -kFarthestBlock) return wrong("place");
   const std::uint64_t count = from.varint();
   // Each block takes at least 20 bytes, so that a count that is too large allocates nothing.
-  if (from.failed() || count > kMaxStoredBlocks || count * 20 > content->size()) return wrong("length");
+  if (!from.good() || count > kMaxStoredBlocks || count * 20 > content->size()) return wrong("length");
   out.blocks.resize(static_cast<std::size_t>(count));
   BlockIndex last{};
   std::int64_t revision = 0;
@@ -151,31 +143,29 @@ Result<StoredSubmap> decode_stored_submap(std::span<const std::uint8_t> bytes) {
     update.block.index = last;
     update.revision = static_cast<std::uint32_t>(revision);
   }
-  for (BlockUpdate& update : out.blocks) update.block.known = from.u64();
+  for (BlockUpdate& update : out.blocks) update.block.known = from.get<std::uint64_t>();
   for (BlockUpdate& update : out.blocks) {
-    update.block.occupied = from.u64();
+    update.block.occupied = from.get<std::uint64_t>();
     if ((update.block.occupied & ~update.block.known) != 0) return wrong("list of voxels");
   }
-  if (from.failed() || !from.at_end()) return wrong("length");
+  if (!from.done()) return wrong("length");
   return out;
 }
 
 std::vector<std::uint8_t> encode_stored(const StoredPlaces& places) {
-  ByteWriter out;
+  store::Packer out;
   const std::size_t count = std::min(places.poses.size(), kMaxStoredSubmaps);
   out.varint(count);
   for (std::size_t i = 0; i < count; ++i) {
     write_submap_key(out, places.poses[i].key);
     write_pose(out, places.poses[i].T_map_submap);
-    out.u32(places.poses[i].revision);
+    out.put(places.poses[i].revision);
   }
   const std::size_t peers = std::min(places.peers.size(), kMaxStoredPeers);
   out.varint(peers);
   for (std::size_t i = 0; i < peers; ++i) {
     const StoredPlaces::Peer& peer = places.peers[i];
-    for (const std::uint8_t byte : peer.id) out.u8(byte);
-    out.u32(peer.start);
-    out.varint(peer.has.size());
+    out.put(peer.id).put(peer.start).varint(peer.has.size());
     for (const std::uint32_t position : peer.has) out.varint(position);
   }
   return packed_for_disk(out);
@@ -184,7 +174,7 @@ std::vector<std::uint8_t> encode_stored(const StoredPlaces& places) {
 Result<StoredPlaces> decode_stored_places(std::span<const std::uint8_t> bytes) {
   const auto content = unpacked_from_disk(bytes);
   if (!content) return content.error();
-  ByteReader from(*content);
+  store::Unpacker from(*content);
   StoredPlaces out;
   const std::uint64_t count = from.varint();
   if (count > kMaxStoredSubmaps) return wrong("length");
@@ -192,17 +182,17 @@ Result<StoredPlaces> decode_stored_places(std::span<const std::uint8_t> bytes) {
     SubmapPose pose;
     if (!read_submap_key(from, pose.key) || !read_pose(from, pose.T_map_submap))
       return wrong("list of poses");
-    pose.revision = from.u32();
+    pose.revision = from.get<std::uint32_t>();
     out.poses.push_back(std::move(pose));
   }
   const std::uint64_t peers = from.varint();
   if (peers > kMaxStoredPeers) return wrong("list of stations");
   for (std::uint64_t i = 0; i < peers; ++i) {
     StoredPlaces::Peer peer;
-    for (std::uint8_t& byte : peer.id) byte = from.u8();
-    peer.start = from.u32();
+    peer.id = from.array<16>();
+    peer.start = from.get<std::uint32_t>();
     const std::uint64_t has = from.varint();
-    if (from.failed() || has > count) return wrong("list of stations");
+    if (!from.good() || has > count) return wrong("list of stations");
     for (std::uint64_t n = 0; n < has; ++n) {
       const std::uint64_t position = from.varint();
       if (position >= count) return wrong("list of stations");
@@ -210,7 +200,7 @@ Result<StoredPlaces> decode_stored_places(std::span<const std::uint8_t> bytes) {
     }
     out.peers.push_back(std::move(peer));
   }
-  if (from.failed() || !from.at_end()) return wrong("length");
+  if (!from.done()) return wrong("length");
   return out;
 }
 

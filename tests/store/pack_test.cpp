@@ -44,6 +44,23 @@ TEST(Pack, is_little_endian_without_padding) {
   EXPECT_EQ(Packer{}.put(std::uint8_t{1}).put(std::uint32_t{0x05040302}).bytes(), (Bytes{1, 2, 3, 4, 5}));
 }
 
+TEST(Pack, gives_back_numbers_of_any_size_and_short_texts) {
+  Packer out;
+  out.varint(0).varint(127).varint(128).varint(~std::uint64_t{0});
+  EXPECT_EQ(out.bytes().size(), 1u + 1 + 2 + 10);
+  out.zigzag(0).zigzag(-64).zigzag(64).zigzag(INT64_MIN).zigzag(INT64_MAX).text<std::uint8_t>("robot");
+  Unpacker in(out.bytes());
+  for (const std::uint64_t value :
+       {std::uint64_t{0}, std::uint64_t{127}, std::uint64_t{128}, ~std::uint64_t{0}})
+    EXPECT_EQ(in.varint(), value);
+  for (const std::int64_t value :
+       {std::int64_t{0}, std::int64_t{-64}, std::int64_t{64}, INT64_MIN, INT64_MAX})
+    EXPECT_EQ(in.zigzag(), value);
+  EXPECT_EQ(in.text<std::uint8_t>(5), "robot");
+  EXPECT_TRUE(in.done());
+  EXPECT_EQ(Packer{}.varint(300).zigzag(-2).text<std::uint8_t>("r").bytes(), (Bytes{0xac, 0x02, 3, 1, 'r'}));
+}
+
 TEST(Unpack, fails_for_good_at_the_first_thing_that_does_not_fit) {
   const Bytes three{1, 0, 0};
   Unpacker short_number(three);
@@ -59,6 +76,10 @@ TEST(Unpack, fails_for_good_at_the_first_thing_that_does_not_fit) {
   Unpacker long_text(text);
   (void)long_text.text(7);
   EXPECT_FALSE(long_text.good());
+  const Bytes endless(11, 0x80);
+  Unpacker too_wide(endless);
+  EXPECT_EQ(too_wide.varint(), 0u);
+  EXPECT_FALSE(too_wide.good());
   const Bytes many = Packer{}.put(std::uint16_t{9}).bytes();
   Unpacker too_many(many);
   EXPECT_EQ(too_many.count(8), 0u);
@@ -72,7 +93,7 @@ TEST(Unpack, takes_any_bytes) {
     for (auto& byte : junk) byte = static_cast<std::uint8_t>(random.next());
     Unpacker in(junk);
     while (in.good()) {
-      switch (random.below(4)) {
+      switch (random.below(5)) {
         case 0:
           (void)in.text(20);
           break;
@@ -81,6 +102,9 @@ TEST(Unpack, takes_any_bytes) {
           break;
         case 2:
           (void)in.flag();
+          break;
+        case 3:
+          (void)in.zigzag();
           break;
         default:
           (void)in.array<16>();
