@@ -2,34 +2,18 @@
 #include "basestation/map/picture.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <ostream>
 
 #include "basestation/map/top_view.hpp"
-#include "basestation/report/table.hpp"
-#include "core/sketch/sketch.hpp"
+#include "core/sketch/picture_frame.hpp"
 #include "perception/map/export/map_file.hpp"
 
 namespace adit::station {
 namespace {
 
-constexpr Colour kPaper{0.955, 0.95, 0.935}, kGround{1.0, 1.0, 0.995}, kInk{0.13, 0.15, 0.19},
-    kFaint{0.42, 0.45, 0.50}, kGrid{0.35, 0.45, 0.55, 0.16};
-// Okabe and Ito: also distinguishable for the colour-blind.
-constexpr std::array<Colour, 6> kPalette{Colour{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
-                                         {0.80, 0.40, 0.65},       {0.90, 0.62, 0.00}, {0.25, 0.60, 0.85}};
-constexpr double kMargin = 34.0, kHeader = 84.0, kRow = 24.0;
-
-/// Map to pixels.
-struct Frame {
-  Eigen::Vector2d low, high;
-  double scale;  ///< Pixels per metre.
-  double x(double mx) const { return kMargin + (mx - low.x()) * scale; }
-  double y(double my) const { return kHeader + (high.y() - my) * scale; }
-  double right() const { return x(high.x()); }
-  double bottom() const { return y(low.y()); }
-};
+constexpr Colour kGround{1.0, 1.0, 0.995};
+constexpr double kMargin = 34.0, kRow = 24.0;
 
 Colour tone(const TopView::Cell& cell) {
   if (cell.kind == TopView::Kind::ground) return kGround;
@@ -38,7 +22,7 @@ Colour tone(const TopView::Cell& cell) {
   return {0.66 - 0.50 * dark, 0.70 - 0.51 * dark, 0.75 - 0.51 * dark};
 }
 
-void draw_cells(Sketch& sketch, const TopView& view, const Frame& frame) {
+void draw_cells(Sketch& sketch, const TopView& view, const PictureFrame& frame) {
   for (int y = 0; y < view.ny(); ++y)
     for (int x = 0; x < view.nx();) {
       // Runs of equal cells as one rectangle on whole pixels: no seams.
@@ -55,47 +39,13 @@ void draw_cells(Sketch& sketch, const TopView& view, const Frame& frame) {
     }
 }
 
-void draw_scale(Sketch& sketch, const Frame& frame) {
-  const double width = frame.high.x() - frame.low.x();
-  const double step = width > 120 ? 20.0 : width > 12 ? 5.0 : 1.0;
-  for (double x = std::ceil(frame.low.x() / step) * step; x <= frame.high.x(); x += step) {
-    sketch.line(frame.x(x), kHeader, frame.x(x), frame.bottom(), 1.0, kGrid);
-    sketch.text(frame.x(x), frame.bottom() + 13, 12, fixed(x, 0), kFaint, Align::centre);
-  }
-  for (double y = std::ceil(frame.low.y() / step) * step; y <= frame.high.y(); y += step) {
-    sketch.line(kMargin, frame.y(y), frame.right(), frame.y(y), 1.0, kGrid);
-    sketch.text(kMargin - 6, frame.y(y), 12, fixed(y, 0), kFaint, Align::right);
-  }
-  const double y = kHeader - 16, x1 = frame.right(), x0 = x1 - step * frame.scale;
-  sketch.line(x0, y, x1, y, 2.5, kInk);
-  sketch.line(x0, y - 5, x0, y + 5, 2.5, kInk);
-  sketch.line(x1, y - 5, x1, y + 5, 2.5, kInk);
-  sketch.text(0.5 * (x0 + x1), y - 13, 13, fixed(step, 0) + " m", kInk, Align::centre);
-}
-
-void draw_trail(Sketch& sketch, const Frame& frame, const MapPicture::Robot& robot, double thickness,
+void draw_trail(Sketch& sketch, const PictureFrame& frame, const MapPicture::Robot& robot, double thickness,
                 Colour colour) {
   cairo_set_source_rgba(sketch.cairo(), colour.r, colour.g, colour.b, colour.a);
   cairo_set_line_width(sketch.cairo(), thickness);
   for (const Pose2& p : robot.trail) cairo_line_to(sketch.cairo(), frame.x(p.x), frame.y(p.y));
   cairo_line_to(sketch.cairo(), frame.x(robot.now.x), frame.y(robot.now.y));
   cairo_stroke(sketch.cairo());
-}
-
-void draw_robot(Sketch& sketch, const Frame& frame, const MapPicture::Robot& robot, Colour colour) {
-  cairo_save(sketch.cairo());
-  cairo_translate(sketch.cairo(), frame.x(robot.now.x), frame.y(robot.now.y));
-  cairo_rotate(sketch.cairo(), -robot.now.yaw);
-  const double l = std::max(robot.length * frame.scale, 9.0), w = std::max(robot.width * frame.scale, 7.0);
-  sketch.rounded(-l / 2 - 2, -w / 2 - 2, l + 4, w + 4, 4, {1, 1, 1, 0.9});
-  sketch.rounded(-l / 2, -w / 2, l, w, 3, colour);
-  cairo_set_source_rgb(sketch.cairo(), 1, 1, 1);  // An arrow head that points forward.
-  cairo_move_to(sketch.cairo(), 0.38 * l, 0);
-  cairo_line_to(sketch.cairo(), 0.05 * l, 0.32 * w);
-  cairo_line_to(sketch.cairo(), 0.05 * l, -0.32 * w);
-  cairo_close_path(sketch.cairo());
-  cairo_fill(sketch.cairo());
-  cairo_restore(sketch.cairo());
 }
 
 void draw_legend(Sketch& sketch, const MapPicture& picture, double top) {
@@ -137,7 +87,8 @@ Result<void> write_map_picture(const perception::VoxelImage& image, const MapPic
   if (view.too_large()) return {Reason::bad_argument, "the map is too large for a picture"};
   if (view.nx() == 0 || picture.width < 400 || picture.width > 8000)
     return {Reason::map_empty, "there is no map yet"};
-  Frame frame{view.low(), view.low() + Eigen::Vector2d(view.nx(), view.ny()) * view.resolution(), 1.0};
+  PictureFrame frame{kMargin, view.low(),
+                     view.low() + Eigen::Vector2d(view.nx(), view.ny()) * view.resolution()};
   for (const MapPicture::Robot& robot : picture.robots) {
     if (!robot.now.position().allFinite() || robot.now.position().norm() > 1e5) continue;
     frame.low = frame.low.cwiseMin(robot.now.position() - Eigen::Vector2d::Constant(1.0));
@@ -151,14 +102,15 @@ Result<void> write_map_picture(const perception::VoxelImage& image, const MapPic
   sketch.fill(0, 0, picture.width, below + kRow * (static_cast<double>(picture.robots.size()) + 1.0) + 20.0,
               kPaper);
   draw_cells(sketch, view, frame);
-  draw_scale(sketch, frame);
+  draw_grid(sketch, frame, extent.x() > 120 ? 20.0 : extent.x() > 12 ? 5.0 : 1.0);
   const double thick = std::clamp(frame.scale * 0.09, 2.0, 5.0);
   for (const MapPicture::Robot& robot : picture.robots)
     draw_trail(sketch, frame, robot, thick + 3.0, {1, 1, 1, 0.85});
   for (std::size_t n = 0; n < picture.robots.size(); ++n)
     draw_trail(sketch, frame, picture.robots[n], thick, kPalette[n % kPalette.size()]);
   for (std::size_t n = 0; n < picture.robots.size(); ++n)
-    draw_robot(sketch, frame, picture.robots[n], kPalette[n % kPalette.size()]);
+    draw_body(sketch, frame, picture.robots[n].now, std::max(picture.robots[n].length * frame.scale, 9.0),
+              std::max(picture.robots[n].width * frame.scale, 7.0), kPalette[n % kPalette.size()]);
   sketch.text(kMargin, 32, 26, picture.title, kInk, Align::left, true);
   sketch.text(kMargin, 62, 15, picture.subtitle, kFaint);
   draw_legend(sketch, picture, below);

@@ -7,32 +7,18 @@
 #include <array>
 #include <cmath>
 
-#include "core/sketch/sketch.hpp"
+#include "core/sketch/picture_frame.hpp"
 #include "sim/picture/ground_plan.hpp"
 
 namespace adit::sim {
 namespace {
 
-constexpr Colour kPaper{0.955, 0.95, 0.935}, kFloorTone{1.0, 1.0, 0.995}, kGlimpsedTone{0.865, 0.875, 0.88},
-    kFurnitureTone{0.57, 0.61, 0.66}, kWallTone{0.17, 0.20, 0.25}, kInk{0.13, 0.15, 0.19},
-    kFaint{0.42, 0.45, 0.50}, kGridTone{0.35, 0.45, 0.55, 0.16};
-// Okabe and Ito: also distinguishable for the colour-blind.
-constexpr std::array<Colour, 6> kPalette{Colour{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
-                                         {0.80, 0.40, 0.65},       {0.90, 0.62, 0.00}, {0.25, 0.60, 0.85}};
+constexpr Colour kFloorTone{1.0, 1.0, 0.995}, kGlimpsedTone{0.865, 0.875, 0.88},
+    kFurnitureTone{0.57, 0.61, 0.66}, kWallTone{0.17, 0.20, 0.25};
 constexpr Colour kEventTone{0.13, 0.15, 0.19}, kPersonTone{0.45, 0.40, 0.36},
     kPersonPathTone{0.45, 0.40, 0.36, 0.55};
-constexpr double kMargin = 28.0, kHeader = 84.0, kRow = 24.0;
+constexpr double kMargin = 28.0, kRow = 24.0;
 constexpr std::size_t kMaxEvents = 40;
-
-/// World to pixels.
-struct View {
-  Eigen::Vector2d low, high;
-  double scale;  ///< Pixels per metre.
-  double x(double wx) const { return kMargin + (wx - low.x()) * scale; }
-  double y(double wy) const { return kHeader + (high.y() - wy) * scale; }
-  double width() const { return (high.x() - low.x()) * scale; }
-  double height() const { return (high.y() - low.y()) * scale; }
-};
 
 Colour tone(GroundPlan::Kind kind) {
   switch (kind) {
@@ -50,10 +36,11 @@ Colour tone(GroundPlan::Kind kind) {
   return kPaper;
 }
 
-void draw_plan(Sketch& sketch, const GroundPlan& plan, const VoxelGrid& grid, const View& view) {
+void draw_plan(Sketch& sketch, const GroundPlan& plan, const VoxelGrid& grid, const PictureFrame& frame) {
   const double r = grid.resolution();
   cairo_save(sketch.cairo());
-  cairo_rectangle(sketch.cairo(), kMargin, kHeader, view.width(), view.height());
+  cairo_rectangle(sketch.cairo(), kMargin, PictureFrame::kHeader, frame.right() - kMargin,
+                  frame.bottom() - PictureFrame::kHeader);
   cairo_clip(sketch.cairo());
   for (int j = 0; j < plan.ny; ++j)
     for (int i = 0; i < plan.nx;) {
@@ -62,57 +49,21 @@ void draw_plan(Sketch& sketch, const GroundPlan& plan, const VoxelGrid& grid, co
       const int first = i;
       while (i < plan.nx && plan.at(i, j) == kind) ++i;
       if (kind == GroundPlan::unknown) continue;
-      const double x0 = std::round(view.x(grid.origin().x() + first * r)),
-                   x1 = std::round(view.x(grid.origin().x() + i * r));
-      const double y0 = std::round(view.y(grid.origin().y() + (j + 1) * r)),
-                   y1 = std::round(view.y(grid.origin().y() + j * r));
+      const double x0 = std::round(frame.x(grid.origin().x() + first * r)),
+                   x1 = std::round(frame.x(grid.origin().x() + i * r));
+      const double y0 = std::round(frame.y(grid.origin().y() + (j + 1) * r)),
+                   y1 = std::round(frame.y(grid.origin().y() + j * r));
       sketch.fill(x0, y0, x1 - x0, y1 - y0, tone(kind));
     }
   cairo_restore(sketch.cairo());
 }
 
-void draw_grid(Sketch& sketch, const View& view) {
-  const double bottom = kHeader + view.height(), right = kMargin + view.width();
-  const double step = view.high.x() - view.low.x() > 12.0 ? 5.0 : 1.0;
-  for (double x = std::ceil(view.low.x() / step) * step; x <= view.high.x(); x += step) {
-    sketch.line(view.x(x), kHeader, view.x(x), bottom, 1.0, kGridTone);
-    sketch.text(view.x(x), bottom + 13, 12, fmt::format("{:.0f}", x + 0.0), kFaint, Align::centre);
-  }
-  for (double y = std::ceil(view.low.y() / step) * step; y <= view.high.y(); y += step) {
-    sketch.line(kMargin, view.y(y), right, view.y(y), 1.0, kGridTone);
-    sketch.text(kMargin - 6, view.y(y), 12, fmt::format("{:.0f}", y + 0.0), kFaint, Align::right);
-  }
-  const double bar = view.high.x() - view.low.x() > 12.0 ? 5.0 : 1.0, y = kHeader - 16, x1 = right,
-               x0 = x1 - bar * view.scale;
-  sketch.line(x0, y, x1, y, 2.5, kInk);
-  sketch.line(x0, y - 5, x0, y + 5, 2.5, kInk);
-  sketch.line(x1, y - 5, x1, y + 5, 2.5, kInk);
-  sketch.text(0.5 * (x0 + x1), y - 13, 13, fmt::format("{:.0f} m", bar), kInk, Align::centre);
-}
-
-void trace(Sketch& sketch, const View& view, const std::vector<Pose2>& poses, double thickness,
+void trace(Sketch& sketch, const PictureFrame& frame, const std::vector<Pose2>& poses, double thickness,
            Colour colour) {
   cairo_set_source_rgba(sketch.cairo(), colour.r, colour.g, colour.b, colour.a);
   cairo_set_line_width(sketch.cairo(), thickness);
-  for (const Pose2& p : poses) cairo_line_to(sketch.cairo(), view.x(p.x), view.y(p.y));
+  for (const Pose2& p : poses) cairo_line_to(sketch.cairo(), frame.x(p.x), frame.y(p.y));
   cairo_stroke(sketch.cairo());
-}
-
-void draw_body(Sketch& sketch, const View& view, const PictureTrail& trail, Colour colour) {
-  const Pose2& pose = trail.poses.back();
-  cairo_save(sketch.cairo());
-  cairo_translate(sketch.cairo(), view.x(pose.x), view.y(pose.y));
-  cairo_rotate(sketch.cairo(), -pose.yaw);
-  const double l = trail.length * view.scale, w = trail.width * view.scale;
-  sketch.rounded(-l / 2 - 2, -w / 2 - 2, l + 4, w + 4, 4, {1, 1, 1, 0.9});
-  sketch.rounded(-l / 2, -w / 2, l, w, 3, colour);
-  cairo_set_source_rgb(sketch.cairo(), 1, 1, 1);  // an arrow head that points forward
-  cairo_move_to(sketch.cairo(), 0.38 * l, 0);
-  cairo_line_to(sketch.cairo(), 0.05 * l, 0.32 * w);
-  cairo_line_to(sketch.cairo(), 0.05 * l, -0.32 * w);
-  cairo_close_path(sketch.cairo());
-  cairo_fill(sketch.cairo());
-  cairo_restore(sketch.cairo());
 }
 
 void draw_label(Sketch& sketch, double x, double y, const std::string& text, Colour colour) {
@@ -128,35 +79,36 @@ Colour colour_of(const PictureSpec& spec, const std::string& id) {
   return kInk;
 }
 
-void draw_people(Sketch& sketch, const View& view, const PictureSpec& spec) {
+void draw_people(Sketch& sketch, const PictureFrame& frame, const PictureSpec& spec) {
   for (const PicturePerson& person : spec.people) {
     if (person.poses.empty()) continue;
     const std::array dash{6.0, 5.0};  // Pixels.
     cairo_set_dash(sketch.cairo(), dash.data(), static_cast<int>(dash.size()), 0.0);
-    trace(sketch, view, person.poses, 2.0, kPersonPathTone);
+    trace(sketch, frame, person.poses, 2.0, kPersonPathTone);
     cairo_set_dash(sketch.cairo(), nullptr, 0, 0.0);
     const Pose2& end = person.poses.back();
-    const double radius = std::max(0.5 * person.size * view.scale, 4.0);
-    sketch.disc(view.x(end.x), view.y(end.y), radius + 2.0, {1, 1, 1, 0.9});
-    sketch.disc(view.x(end.x), view.y(end.y), radius, kPersonTone);
+    const double radius = std::max(0.5 * person.size * frame.scale, 4.0);
+    sketch.disc(frame.x(end.x), frame.y(end.y), radius + 2.0, {1, 1, 1, 0.9});
+    sketch.disc(frame.x(end.x), frame.y(end.y), radius, kPersonTone);
   }
 }
 
 /// Returns where labels stand, in pixels.
-std::vector<Eigen::Vector2d> draw_run(Sketch& sketch, const View& view, const PictureSpec& spec) {
+std::vector<Eigen::Vector2d> draw_run(Sketch& sketch, const PictureFrame& frame, const PictureSpec& spec) {
   std::vector<Eigen::Vector2d> labels;
   const auto label = [&](const Eigen::Vector2d& at, const std::string& text, Colour colour) {
     draw_label(sketch, at.x(), at.y(), text, colour);
     labels.push_back(at);
   };
-  const double thick = std::clamp(view.scale * 0.09, 2.5, 6.0);
-  for (const PictureTrail& trail : spec.trails) trace(sketch, view, trail.poses, thick + 3.5, {1, 1, 1, 0.9});
+  const double thick = std::clamp(frame.scale * 0.09, 2.5, 6.0);
   for (const PictureTrail& trail : spec.trails)
-    trace(sketch, view, trail.poses, thick, colour_of(spec, trail.id));
+    trace(sketch, frame, trail.poses, thick + 3.5, {1, 1, 1, 0.9});
+  for (const PictureTrail& trail : spec.trails)
+    trace(sketch, frame, trail.poses, thick, colour_of(spec, trail.id));
   for (const PictureGoal& goal : spec.goals) {
     const Colour colour = colour_of(spec, goal.robot);
-    const double x = view.x(goal.position.x()), y = view.y(goal.position.y()),
-                 r = std::clamp(0.25 * view.scale, 6.0, 12.0);
+    const double x = frame.x(goal.position.x()), y = frame.y(goal.position.y()),
+                 r = std::clamp(0.25 * frame.scale, 6.0, 12.0);
     sketch.disc(x, y, r + 3.0, {1, 1, 1, 0.85});
     sketch.ring(x, y, r, 2.5, colour);
     sketch.line(x - r * 0.5, y, x + r * 0.5, y, 2.0, colour);
@@ -166,13 +118,14 @@ std::vector<Eigen::Vector2d> draw_run(Sketch& sketch, const View& view, const Pi
     if (trail.poses.empty()) continue;
     const Colour colour = colour_of(spec, trail.id);
     const Pose2& start = trail.poses.front();
-    sketch.disc(view.x(start.x), view.y(start.y), thick * 1.7 + 2, {1, 1, 1});
-    sketch.disc(view.x(start.x), view.y(start.y), thick * 1.7, colour);
-    draw_body(sketch, view, trail, colour);
-    label({view.x(start.x), view.y(start.y) - 30}, trail.id, colour);
+    sketch.disc(frame.x(start.x), frame.y(start.y), thick * 1.7 + 2, {1, 1, 1});
+    sketch.disc(frame.x(start.x), frame.y(start.y), thick * 1.7, colour);
+    draw_body(sketch, frame, trail.poses.back(), trail.length * frame.scale, trail.width * frame.scale,
+              colour);
+    label({frame.x(start.x), frame.y(start.y) - 30}, trail.id, colour);
     const Pose2& end = trail.poses.back();
     if ((end.position() - start.position()).norm() > 1.5)
-      label({view.x(end.x), view.y(end.y) + 0.5 * view.scale * std::max(trail.length, trail.width) + 20},
+      label({frame.x(end.x), frame.y(end.y) + 0.5 * frame.scale * std::max(trail.length, trail.width) + 20},
             trail.id, colour);
   }
   return labels;
@@ -185,11 +138,11 @@ void draw_marker(Sketch& sketch, double x, double y, std::size_t number) {
 }
 
 /// Markers that would fall onto one another or onto a label are moved upwards.
-void draw_events(Sketch& sketch, const View& view, const PictureSpec& spec,
+void draw_events(Sketch& sketch, const PictureFrame& frame, const PictureSpec& spec,
                  std::vector<Eigen::Vector2d> taken) {
   for (std::size_t n = 0; n < std::min(spec.events.size(), kMaxEvents); ++n) {
-    const Eigen::Vector2d place(view.x(spec.events[n].position.x()), view.y(spec.events[n].position.y()));
-    Eigen::Vector2d spot = place + Eigen::Vector2d(0, -0.6 * view.scale - 14);
+    const Eigen::Vector2d place(frame.x(spec.events[n].position.x()), frame.y(spec.events[n].position.y()));
+    Eigen::Vector2d spot = place + Eigen::Vector2d(0, -0.6 * frame.scale - 14);
     const auto free = [&] {
       return std::none_of(taken.begin(), taken.end(),
                           [&](const auto& t) { return (t - spot).norm() < 25.0; });
@@ -253,26 +206,26 @@ Result<void> write_picture(const World& world, const PictureSpec& spec, const st
   if (!(spec.headroom > 0.0 && spec.headroom <= 5.0))
     return {Reason::bad_argument, "picture: headroom: expected up to 5 m"};
   const GroundPlan plan = make_ground_plan(world, spec.headroom);
-  View view{plan.low, plan.high, 1.0};
+  PictureFrame frame{kMargin, plan.low, plan.high};
   for (const PictureTrail& trail : spec.trails)
     for (const Pose2& p : trail.poses) {
-      view.low = view.low.cwiseMin(p.position() - Eigen::Vector2d::Constant(1.0));
-      view.high = view.high.cwiseMax(p.position() + Eigen::Vector2d::Constant(1.0));
+      frame.low = frame.low.cwiseMin(p.position() - Eigen::Vector2d::Constant(1.0));
+      frame.high = frame.high.cwiseMax(p.position() + Eigen::Vector2d::Constant(1.0));
     }
-  if (!view.low.allFinite() || !view.high.allFinite() || (view.high - view.low).maxCoeff() > 1e5)
+  if (!frame.low.allFinite() || !frame.high.allFinite() || (frame.high - frame.low).maxCoeff() > 1e5)
     return {Reason::bad_argument, "picture: a trail leaves the world"};
-  view.scale = (spec.width - 2 * kMargin) / (view.high.x() - view.low.x());
-  view.scale = std::min(view.scale, 6000.0 / (view.high.y() - view.low.y()));
+  frame.scale = (spec.width - 2 * kMargin) / (frame.high.x() - frame.low.x());
+  frame.scale = std::min(frame.scale, 6000.0 / (frame.high.y() - frame.low.y()));
   const Legend legend = plan_legend(spec);
-  const double below = kHeader + view.height() + 30.0;
+  const double below = frame.bottom() + 30.0;
   const int height =
       static_cast<int>(below + kRow * static_cast<double>(legend.rows) + (legend.rows ? 20.0 : 4.0));
   Sketch sketch(spec.width, height);
   sketch.fill(0, 0, spec.width, height, kPaper);
-  draw_plan(sketch, plan, world.grid(), view);
-  draw_grid(sketch, view);
-  draw_people(sketch, view, spec);
-  draw_events(sketch, view, spec, draw_run(sketch, view, spec));
+  draw_plan(sketch, plan, world.grid(), frame);
+  draw_grid(sketch, frame, frame.high.x() - frame.low.x() > 12.0 ? 5.0 : 1.0);
+  draw_people(sketch, frame, spec);
+  draw_events(sketch, frame, spec, draw_run(sketch, frame, spec));
   sketch.text(kMargin, 32, 26, spec.title, kInk, Align::left, true);
   sketch.text(kMargin, 62, 15, spec.subtitle, kFaint);
   draw_legend(sketch, spec, legend, below);
