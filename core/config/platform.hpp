@@ -88,6 +88,20 @@ struct Platform {
     constexpr double kTread = 0.28;  // Tread depth of the steepest stairs, m.
     return stairs ? std::max(max_slope, step / kTread) : max_slope;
   }
+  /// `wanted` within the limits of speed, turn rate and climb, without a velocity that the drive does not
+  /// have.
+  Twist2 limited(const Twist2& wanted) const {
+    Twist2 out = wanted;
+    if (!sideways()) out.vy = 0.0;
+    const double speed = std::hypot(out.vx, out.vy);
+    if (speed > max_speed) {
+      out.vx *= max_speed / speed;
+      out.vy *= max_speed / speed;
+    }
+    out.wz = std::clamp(out.wz, -max_turn, max_turn);
+    out.vz = flies() ? std::clamp(out.vz, -max_climb, max_climb) : 0.0;
+    return out;
+  }
   bool turns_on_spot() const { return drive != Drive::car; }
   bool flies() const { return drive == Drive::aerial; }
   /// Distance of the rear axle behind base_link, m; on a car this point does not move sideways. 0: base_link

@@ -197,15 +197,7 @@ nav::Target Navigation::target() const {
 
 Twist2 Navigation::limited(const Twist2& wanted) const {
   const Platform& p = params_.platform;
-  Twist2 t = wanted;
-  if (!p.sideways()) t.vy = 0.0;
-  const double speed = std::hypot(t.vx, t.vy);
-  if (speed > p.max_speed) {
-    t.vx *= p.max_speed / speed;
-    t.vy *= p.max_speed / speed;
-  }
-  t.wz = std::clamp(t.wz, -p.max_turn, p.max_turn);
-  t.vz = p.flies() ? std::clamp(t.vz, -p.max_climb, p.max_climb) : 0.0;
+  Twist2 t = p.limited(wanted);
   if (!p.turns_on_spot()) {
     const double most = std::fabs(t.vx) / p.least_radius();
     t.wz = std::clamp(t.wz, -most, most);

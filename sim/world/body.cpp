@@ -13,15 +13,7 @@ constexpr double kNoWay = 1e-3;  // m/s: a slower command says nothing about a c
 
 void Body::command(const Twist2& wanted) {
   const auto finite = [](double v) { return std::isfinite(v) ? v : 0.0; };
-  wanted_ = {finite(wanted.vx), finite(wanted.vy), finite(wanted.wz), finite(wanted.vz)};
-  if (!platform_.sideways()) wanted_.vy = 0.0;
-  const double speed = std::hypot(wanted_.vx, wanted_.vy);
-  if (speed > platform_.max_speed) {
-    wanted_.vx *= platform_.max_speed / speed;
-    wanted_.vy *= platform_.max_speed / speed;
-  }
-  wanted_.wz = std::clamp(wanted_.wz, -platform_.max_turn, platform_.max_turn);
-  wanted_.vz = platform_.flies() ? std::clamp(wanted_.vz, -platform_.max_climb, platform_.max_climb) : 0.0;
+  wanted_ = platform_.limited({finite(wanted.vx), finite(wanted.vy), finite(wanted.wz), finite(wanted.vz)});
   // Of a car that shall stand the wheels stay as they are.
   if (platform_.drive == Drive::car && std::abs(wanted_.vx) > kNoWay)
     wheels_wanted_ = std::clamp(std::atan(platform_.wheelbase * wanted_.wz / wanted_.vx),
