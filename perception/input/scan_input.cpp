@@ -140,6 +140,67 @@ void ScanInput::note_attitude(Scan& scan) {
                               "clock; roll and pitch are those of the odometry"});
 }
 
+ScanInput::SweepMotion ScanInput::motion_of(const Sweep& sweep, const PoseFunction& pose,
+                                            const Pose3& T_base_sensor, Scan& scan) const {
+  SweepMotion motion{Deskew::none(T_base_sensor)};
+  if (!sweep.timed || sweep.stamp == 0) return motion;
+  motion.first = sweep.points.front().time;
+  for (const TimedPoint& point : sweep.points) motion.first = std::min(motion.first, point.time);
+  const std::uint64_t from =
+      sweep.stamp +
+      static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(double{motion.first} * 1e9)));
+  if (from == scan.stamp) return motion;
+  // Roll and pitch of the IMU turn the sweep, too.
+  const PoseFunction leaning = [&](std::uint64_t stamp) -> Result<Pose3> {
+    auto T_odom_base = pose(stamp);
+    if (!T_odom_base || !scan.attitude) return T_odom_base;
+    const auto R_level_base = attitude_at(stamp);
+    if (R_level_base && *R_level_base)
+      T_odom_base->orientation = with_attitude(*T_odom_base, **R_level_base).orientation;
+    return T_odom_base;
+  };
+  if (auto made = Deskew::over(from, scan.stamp, leaning, T_base_sensor)) {
+    motion.deskew = std::move(*made);
+    scan.deskewed = true;
+  }
+  return motion;
+}
+
+std::size_t ScanInput::add_points(const Source& source, const Sweep& sweep, const SweepMotion& motion,
+                                  bool moved, Scan& scan) {
+  const auto least2 = static_cast<float>(source.lidar.min_range * source.lidar.min_range);
+  const auto most2 = static_cast<float>(source.lidar.max_range * source.lidar.max_range);
+  const Eigen::Vector3f origin = moved ? scan.origin : Eigen::Vector3f(0, 0, 0);
+  scan.points.reserve(sweep.points.size());
+  std::size_t below = 0;
+  const std::vector<std::uint8_t>* isolated =
+      marks_isolated_ && &source == &sources_.front() && !moved ? &isolated_.find(sweep) : nullptr;
+  if (isolated && isolated->empty()) isolated = nullptr;
+  for (const TimedPoint& point : sweep.points) {
+    const float range2 = (point.position - origin).squaredNorm();
+    if (!std::isfinite(range2)) {
+      ++scan.counts.not_finite;
+      continue;
+    }
+    if (range2 < least2 || range2 > most2) {
+      ++scan.counts.out_of_range;
+      continue;
+    }
+    const Eigen::Vector3f at = motion.deskew(point.position, point.time - motion.first);
+    if (body_.contains(at)) {
+      ++scan.counts.own_body;
+      continue;
+    }
+    const float fall = scan.origin.z() - at.z();
+    below += fall > 0 && fall * fall > kFalls * kFalls * range2;
+    scan.points.push_back(at);
+    if (isolated)
+      scan.isolated.push_back((*isolated)[static_cast<std::size_t>(&point - sweep.points.data())]);
+  }
+  scan.counts.used = scan.points.size();
+  return below;
+}
+
 Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index, const std::string& frame,
                                            const PoseFunction& pose) {
   if (index >= sources_.size()) return Error{Reason::bad_argument, "the platform has no such lidar"};
@@ -162,62 +223,8 @@ Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index
   scan.attitude = *attitude;
   scan.origin = mounted.cast<float>();
 
-  std::uint64_t from = scan.stamp;
-  float before = 0;  // From the sweep's stamp to the first pose, s.
-  if (sweep.timed && sweep.stamp != 0) {
-    float first = sweep.points.front().time;
-    for (const TimedPoint& point : sweep.points) first = std::min(first, point.time);
-    before = first;
-    from = sweep.stamp +
-           static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(double{first} * 1e9)));
-  }
-  Deskew deskew = Deskew::none(*T_base_sensor);
-  if (from != scan.stamp) {
-    // Roll and pitch of the IMU turn the sweep, too.
-    const PoseFunction leaning = [&](std::uint64_t stamp) -> Result<Pose3> {
-      auto T_odom_base = pose(stamp);
-      if (!T_odom_base || !scan.attitude) return T_odom_base;
-      const auto R_level_base = attitude_at(stamp);
-      if (R_level_base && *R_level_base)
-        T_odom_base->orientation = with_attitude(*T_odom_base, **R_level_base).orientation;
-      return T_odom_base;
-    };
-    if (auto made = Deskew::over(from, scan.stamp, leaning, *T_base_sensor)) {
-      deskew = std::move(*made);
-      scan.deskewed = true;
-    }
-  }
-
-  const auto least2 = static_cast<float>(source.lidar.min_range * source.lidar.min_range);
-  const auto most2 = static_cast<float>(source.lidar.max_range * source.lidar.max_range);
-  const Eigen::Vector3f origin = moved ? scan.origin : Eigen::Vector3f(0, 0, 0);
-  scan.points.reserve(sweep.points.size());
-  std::size_t below = 0;
-  const std::vector<std::uint8_t>* isolated =
-      marks_isolated_ && index == 0 && !moved ? &isolated_.find(sweep) : nullptr;
-  if (isolated && isolated->empty()) isolated = nullptr;
-  for (const TimedPoint& point : sweep.points) {
-    const float range2 = (point.position - origin).squaredNorm();
-    if (!std::isfinite(range2)) {
-      ++scan.counts.not_finite;
-      continue;
-    }
-    if (range2 < least2 || range2 > most2) {
-      ++scan.counts.out_of_range;
-      continue;
-    }
-    const Eigen::Vector3f at = deskew(point.position, point.time - before);
-    if (body_.contains(at)) {
-      ++scan.counts.own_body;
-      continue;
-    }
-    const float fall = scan.origin.z() - at.z();
-    below += fall > 0 && fall * fall > kFalls * kFalls * range2;
-    scan.points.push_back(at);
-    if (isolated)
-      scan.isolated.push_back((*isolated)[static_cast<std::size_t>(&point - sweep.points.data())]);
-  }
-  scan.counts.used = scan.points.size();
+  const SweepMotion motion = motion_of(sweep, pose, *T_base_sensor, scan);
+  const std::size_t below = add_points(source, sweep, motion, moved, scan);
   if (const auto fits = plausible(source, sweep, scan, below); !fits) return fits.error();
   if (index > 0) {
     source.stamp = scan.stamp;

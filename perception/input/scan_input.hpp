@@ -93,6 +93,7 @@ class ScanInput {
   Result<Pose3> find(const std::string& frame) const;
 
  private:
+  /// A lidar, its newest sweep, and the counts by which it is judged.
   struct Source {
     LidarConfig lidar{};
     std::uint64_t newest{};  ///< Stamp of the newest sweep.
@@ -104,11 +105,22 @@ class ScanInput {
     int overtaken{};         ///< Rises by each sweep that comes after a newer one, falls by the others.
     int missed{};            ///< Scans in a row without a sweep of it.
   };
+  /// The motion during a sweep, and the time of its first point.
+  struct SweepMotion {
+    Deskew deskew;
+    float first{};  ///< After Sweep::stamp, s.
+  };
   /// Errors: sample_stale, sensor_times.
   static Result<void> in_order(Source& source, std::uint64_t stamp);
   /// Whether the lidar can be there; `below`: returns of `scan` that are below it. Errors: scan_empty,
   /// lidar_mounting.
   Result<void> plausible(Source& source, const Sweep& sweep, const Scan& scan, std::size_t below) const;
+  SweepMotion motion_of(const Sweep& sweep, const PoseFunction& pose, const Pose3& T_base_sensor,
+                        Scan& scan) const;
+  /// Adds the returns of a sweep and counts its other points. `moved`: the points are in base_link already.
+  /// Returns the number of returns below the lidar.
+  std::size_t add_points(const Source& source, const Sweep& sweep, const SweepMotion& motion, bool moved,
+                         Scan& scan);
   void note_attitude(Scan& scan);
   Result<std::optional<Eigen::Quaterniond>> attitude_at(std::uint64_t stamp) const;
   static void merge(Source& other, const PoseFunction& pose, Scan& scan);
