@@ -42,7 +42,7 @@ bool Receiver::take(const std::string& sender, std::uint32_t session, std::uint3
     senders_.erase(std::min_element(senders_.begin(), senders_.end(), [](const auto& a, const auto& b) {
       return a.second.heard < b.second.heard;
     }));
-  Sender& from = senders_[sender];
+  Reception& from = senders_[sender];
   from.heard = now;
   from.news = news_ = true;
   if (from.receipt.session != session) from.receipt = {session, 0, {}};
@@ -73,12 +73,12 @@ std::optional<std::vector<std::pair<std::string, Receipt>>> Receiver::due(Time n
   const auto with_news =
       std::count_if(senders_.begin(), senders_.end(), [](const auto& s) { return s.second.news; });
   if (with_news == 0) {
-    add([](const Sender&) { return true; });  // A receipt that was lost is repeated while nothing arrives.
+    add([](const Reception&) { return true; });  // A receipt that was lost is repeated while nothing arrives.
   } else {
     // Or beside others.
-    add([](const Sender& sender) { return sender.news; });
+    add([](const Reception& sender) { return sender.news; });
     if (static_cast<std::size_t>(with_news) <= params_.max_receipts)
-      add([now](const Sender& sender) { return sender.again && sender.acknowledged != now; });
+      add([now](const Reception& sender) { return sender.again && sender.acknowledged != now; });
   }
   turn_ = out.size() < params_.max_receipts ? std::string{} : out.back().first;
   news_ = static_cast<std::size_t>(with_news) > params_.max_receipts;

@@ -37,7 +37,8 @@ class Receiver {
   void greet() { news_ = true; }
 
  private:
-  struct Sender {
+  /// The pieces that arrived of one sender, and what to acknowledge.
+  struct Reception {
     Receipt receipt{};
     bool news{};
     bool again{};  ///< Its last receipt went out once, and may have been lost.
@@ -45,7 +46,7 @@ class Receiver {
     std::optional<Time> acknowledged{};
   };
   ReceiverParams params_;
-  std::map<std::string, Sender> senders_{};
+  std::map<std::string, Reception> senders_{};
   std::string
       turn_{};  ///< The last sender in an acknowledgement that was full: the next one begins after it.
   bool news_{true};
