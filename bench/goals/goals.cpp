@@ -24,17 +24,17 @@ using namespace adit::bench;
 struct Outcome {
   Course course{};
   std::string error{};
-  bool arrived{}, told{};  ///< `told`: it was reported unreachable.
+  bool arrived{}, reported{};  ///< `reported`: it was reported unreachable.
   int collisions{};
   double clearance{}, seconds{}, told_after{};
-  std::optional<double> told_late{};  ///< Delay of the report, s; negative: early; empty: never provable.
+  std::optional<double> reported_late{};  ///< Delay of the report, s; negative: early; empty: never provable.
 };
 
-constexpr double kArrived = 0.35;  // m: the goal's tolerance, and what a scan is off by
-constexpr double kDrift = 0.03;    // of the way: what dead reckoning is off by, three deviations
-constexpr double kLook = 1.0;      // s: as exact as the other time is known
-constexpr double kSent = 4.0;      // s: when the goal is sent
-constexpr double kTold = 10.0;     // s: delay within which an unreachable goal must be reported
+constexpr double kArrived = 0.35;   // m: the goal's tolerance, and what a scan is off by
+constexpr double kDrift = 0.03;     // of the way: what dead reckoning is off by, three deviations
+constexpr double kLook = 1.0;       // s: as exact as the other time is known
+constexpr double kSent = 4.0;       // s: when the goal is sent
+constexpr double kReported = 10.0;  // s: delay within which an unreachable goal must be reported
 
 /// From when the goal was sent until what the robot saw proves that it cannot get there, s.
 std::optional<double> knowable_after(const Course& course, std::span<const Pose2> poses) {
@@ -70,22 +70,22 @@ Outcome run(const Course& course, const sim::AgentFactory& agents, double slowne
   const auto first = std::find_if(poses.begin(), poses.end(), [&](const Pose2& p) { return off(p) < near; });
   out.seconds = 0.1 * static_cast<double>(first - poses.begin()) - kSent;
   for (const sim::TimedEvent& event : done->report.events) {
-    if (out.told || event.text.find("no way to its goal") == std::string::npos) continue;
-    out.told = true;
+    if (out.reported || event.text.find("no way to its goal") == std::string::npos) continue;
+    out.reported = true;
     out.told_after = std::chrono::duration<double>(event.at).count() - kSent;
   }
-  if (!out.told || course.reachable) return out;
-  if (const auto known = knowable_after(course, poses)) out.told_late = out.told_after - *known;
+  if (!out.reported || course.reachable) return out;
+  if (const auto known = knowable_after(course, poses)) out.reported_late = out.told_after - *known;
   return out;
 }
 
 bool as_it_should_be(const Outcome& o) {
   if (!o.error.empty() || o.collisions > 0) return false;
-  return o.course.reachable ? o.arrived : o.told && o.told_late.value_or(0.0) <= kTold;
+  return o.course.reachable ? o.arrived : o.reported && o.reported_late.value_or(0.0) <= kReported;
 }
 
 struct Row {
-  int reachable{}, arrived{}, apart{}, told{}, unproven{}, collided{}, broken{};
+  int reachable{}, arrived{}, apart{}, reported{}, unproven{}, collided{}, broken{};
   double clearance{1e9}, ratio{}, latest{}, late{};
   void add(const Outcome& o) {
     broken += !o.error.empty();
@@ -94,10 +94,10 @@ struct Row {
     clearance = std::min(clearance, o.clearance);
     if (!o.course.reachable) {
       ++apart;
-      told += o.told;
+      reported += o.reported;
       latest = std::max(latest, o.told_after);
-      if (o.told_late) late = std::max(late, *o.told_late);
-      unproven += o.told && (!o.told_late || *o.told_late < -kLook);
+      if (o.reported_late) late = std::max(late, *o.reported_late);
+      unproven += o.reported && (!o.reported_late || *o.reported_late < -kLook);
       return;
     }
     ++reachable;
@@ -107,7 +107,7 @@ struct Row {
   }
   void print(const std::string& name) const {
     fmt::print("| {} | {} | {} | {} | {} | {:.1f} | {:.1f} | {} | {} | {:.2f} | {:.1f} | {} |\n", name,
-               reachable, arrived, apart, told, latest, late, unproven, collided,
+               reachable, arrived, apart, reported, latest, late, unproven, collided,
                clearance > 1e8 ? 0.0 : clearance, arrived > 0 ? ratio / arrived : 0.0, broken);
   }
 };
@@ -174,13 +174,13 @@ int main(int argc, char** argv) {
                  o.course.goal.y(), o.collisions > 0 ? ", collided" : "",
                  o.course.reachable && !o.arrived ? ", not reached" : "",
                  !o.course.reachable && !good && o.error.empty() && o.collisions == 0
-                     ? ", out of reach and that was not told in time"
+                     ? ", out of reach and that was not reported in time"
                      : "",
                  o.error);
   }
   fmt::print(
-      "| | goals | reached | out of reach | told | at the latest after, s | after it could be known, s | "
-      "told "
+      "| | goals | reached | out of reach | reported | at the latest after, s | after it could be known, s | "
+      "reported "
       "without proof | with a collision | smallest clearance, m | time / straight drive | failed to run |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const auto& [name, row] : by_kind) row.print(name);

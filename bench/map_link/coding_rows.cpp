@@ -80,19 +80,19 @@ SentPieces send_all_of(const MapDrive& drive) {
 Result<void> print_coding(double length, bool mission) {
   const auto building = building_map();
   if (!building) return building.error();
-  const std::vector<FineBlock> whole = fine_blocks(*building);
+  const std::vector<FineBlock> building_blocks = fine_blocks(*building);
   const auto bounds = building->bounds();
   const int middle = (bounds->low.x + bounds->high.x) / 2 / 8;
   std::vector<FineBlock> east;
-  for (const FineBlock& block : whole)
+  for (const FineBlock& block : building_blocks)
     if (block.index.x >= middle) east.push_back(block);
 
   fmt::print(
       "| map | voxel, m | m2 | pieces | B/m2 | with headers | before | .bt, zstd -19 | ratio | encode / "
       "decode, us a "
       "block |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
-  print_rows("geb079, 1200 B", whole, kBoxOfBuilding, 1200);
-  print_rows("geb079, 500 B", whole, kBoxOfBuilding, 500);
+  print_rows("geb079, 1200 B", building_blocks, kBoxOfBuilding, 1200);
+  print_rows("geb079, 500 B", building_blocks, kBoxOfBuilding, 500);
   print_rows("geb079, held-out half", east, seen_area(east), 1200);
   std::vector<MapDrive> drives;
   for (const HeldOut& world : kHeldOut) {
@@ -104,7 +104,7 @@ Result<void> print_coding(double length, bool mission) {
     drives.push_back(std::move(*drive));
   }
   for (int level = 3; level >= 1; --level) {
-    const double bytes = static_cast<double>(code(whole, level, 1200).bytes) / kBoxOfBuilding;
+    const double bytes = static_cast<double>(code(building_blocks, level, 1200).bytes) / kBoxOfBuilding;
     const double goal = kGoal[static_cast<std::size_t>(level)];
     fmt::print("{}geb079 at {} m: {:.2f} B/m2, goal {:.0f}: {}\n", level == 3 ? "\n" : "",
                kVoxel[static_cast<std::size_t>(level)], bytes, goal, bytes <= goal ? "holds" : "missed");

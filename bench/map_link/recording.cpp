@@ -82,8 +82,8 @@ class Walker {
 
 BlockIndex lattice_offset(const Pose3& T_odom_submap) {
   const Eigen::Vector3d at = T_odom_submap.position / static_cast<double>(BlockIndex::kSize);
-  const auto whole = [](double v) { return static_cast<std::int32_t>(std::lround(v)); };
-  return {whole(at.x()), whole(at.y()), whole(at.z())};
+  const auto rounded = [](double v) { return static_cast<std::int32_t>(std::lround(v)); };
+  return {rounded(at.x()), rounded(at.y()), rounded(at.z())};
 }
 
 MapRecording record(const Ground& ground, std::uint64_t seed, int number, Duration length) {

@@ -20,8 +20,8 @@ struct LeafEquality {
   double of_occupied() const { return share(theirs_occupied_equal, theirs_occupied); }
 
  private:
-  static double share(std::size_t part, std::size_t whole) {
-    return whole == 0 ? 1.0 : static_cast<double>(part) / static_cast<double>(whole);
+  static double share(std::size_t part, std::size_t all) {
+    return all == 0 ? 1.0 : static_cast<double>(part) / static_cast<double>(all);
   }
 };
 
