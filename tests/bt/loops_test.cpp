@@ -37,7 +37,7 @@ TEST(Repeat, AHaltResetsTheCount) {
   EXPECT_EQ(dry.ticks(2), (Trace{"R A", "S A"}));
 }
 
-TEST(RetryUntilSuccessful, TriesAsOftenAsToldAndYieldsBetween) {
+TEST(RetryUntilSuccessful, RetriesTheGivenNumberOfTimesAndYieldsBetween) {
   Dry dry(R"(<RetryUntilSuccessful num_attempts="3"><A/></RetryUntilSuccessful>)", {{"A", "F"}});
   EXPECT_EQ(dry.ticks(4), (Trace{"R A", "R A", "F A", "R A"}));
   Dry good(R"(<RetryUntilSuccessful num_attempts="3"><A/></RetryUntilSuccessful>)", {{"A", "FS"}});

@@ -76,7 +76,7 @@ TEST(Evaluation, RelativeErrorsByPosesOrMetres) {
   EXPECT_NEAR(metres.rpe.mean, 0.2, 1e-12);
 }
 
-TEST(Evaluation, WhatCannotBeComparedIsAnError) {
+TEST(Evaluation, ComparisonOfDifferentTypesIsAnError) {
   const std::vector<StampedPose> truth = line_of(10, 1.0);
   std::vector<StampedPose> later = truth;
   for (StampedPose& pose : later) pose.stamp_s += 100;

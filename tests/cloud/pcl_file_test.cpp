@@ -108,11 +108,11 @@ TEST_F(Pcd, BrokenFilesAreOneLine) {
 }
 
 TEST_F(Pcd, MutatedFilesDoNotCrash) {
-  const std::string whole =
+  const std::string complete =
       header("binary_compressed") + std::string("\x0a\0\0\0\x1c\0\0\0", 8) + "0123456789";
   std::mt19937 random(1);
   for (int i = 0; i < 300; ++i) {
-    std::string text = whole;
+    std::string text = complete;
     for (int k = 0; k < 3; ++k) text[random() % text.size()] = static_cast<char>(random());
     const auto file = read(text);
     if (file) {

@@ -162,7 +162,7 @@ TEST_F(CallTest, ThatIsCancelledCompletesOnceAndTheComponentKnows) {
   EXPECT_THAT(asker->results, ElementsAre(kCancelled, kCancelled));
 }
 
-TEST_F(CallTest, WhoseReplyIsDroppedIsCancelled) {
+TEST_F(CallTest, IsCancelledWhenItsReplyIsDropped) {
   const auto callee = offering(Mood::drops);
   asker->ask(service, 1);
   run(1ms);

@@ -73,7 +73,7 @@ TEST(Links, the_standard_ones_have_the_documented_values) {
   }
 }
 
-TEST(Platforms, wrong_files_name_file_line_and_what_was_expected) {
+TEST(Platforms, wrong_files_name_file_line_and_expected_value) {
   const Folder folder;
   const std::string good =
       "name: x\ndrive: holonomic\nlength: 1\nwidth: 1\nmax_speed: 1\nmax_turn: 1\n"
@@ -208,7 +208,7 @@ TEST(Links, a_mines_radio_has_the_public_simulators_numbers) {
   EXPECT_EQ(link->range, 50.0);
 }
 
-TEST(Search, looks_beside_the_file_first_and_tells_where_it_looked) {
+TEST(Search, looks_beside_the_file_first_and_names_the_searched_folders) {
   const Folder folder;
   const std::string own = folder.write("platforms/wheeled.yaml", "name: own\n");
   const std::string beside = folder.write("scenario.yaml", "");

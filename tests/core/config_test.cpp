@@ -73,7 +73,7 @@ TEST(ConfigNode, an_unknown_key_in_a_nested_mapping_or_list_is_found) {
               StartsWith("f.yaml:4: unknown key 'other'"));
 }
 
-TEST(ConfigNode, a_missing_key_tells_which) {
+TEST(ConfigNode, names_the_missing_key) {
   Reason reason{};
   EXPECT_EQ(error_of(
                 "a: 1\n", [](const Node& n) { n.number("a"), n.text("name"); }, &reason),
@@ -87,7 +87,7 @@ struct Wrong {
   Reason reason;
 };
 class ConfigWrong : public testing::TestWithParam<Wrong> {};
-TEST_P(ConfigWrong, tells_file_line_key_and_what_was_expected) {
+TEST_P(ConfigWrong, names_file_line_key_and_expected_value) {
   Reason reason{};
   const std::string error = error_of(
       GetParam().yaml,

@@ -250,17 +250,17 @@ TEST(LiveWorker, computes_on_its_own_thread) {
 }
 
 TEST(LiveWorker, work_that_throws_is_a_failure_and_completes_with_an_error) {
-  std::promise<std::string> told, done;
+  std::promise<std::string> reported, done;
   LiveParams params;
   params.on_failure = [&](const std::string& strand, const std::string& what) {
-    told.set_value(strand + ": " + what);
+    reported.set_value(strand + ": " + what);
   };
   LiveRuntime runtime(params);
   const auto worker = runtime.dedicated_strand("planner");
   worker->compute(
       {.name = "plan"}, [] { throw std::runtime_error("no path"); },
       [&](const Result<void>& result) { done.set_value(result.error().text); });
-  EXPECT_EQ(told.get_future().get(), "planner: compute: no path");
+  EXPECT_EQ(reported.get_future().get(), "planner: compute: no path");
   EXPECT_EQ(done.get_future().get(), "plan: no path");
 }
 

@@ -82,7 +82,7 @@ class Chains {
 
 // Instances come and go, replies race with deadlines: each call completes exactly once, for a reason that
 // Service names. Every second instance stays until it has answered a call.
-TEST(LiveCall, CompletesExactlyOnceWhateverHappens) {
+TEST(LiveCall, CompletesExactlyOnceInEveryRace) {
   LiveRuntime runtime;
   const auto server = runtime.strand("server"), caller = runtime.strand("caller");
   constexpr int kCalls = 2000;

@@ -77,7 +77,7 @@ TEST_F(LiveJobs, ThoseOfHighPriorityGoFirst) {
   EXPECT_THAT(wait_for(4), ElementsAre("3", "4", "2", "1"));
 }
 
-TEST_F(LiveJobs, WhatDoesNotFitCompletesWithQueueFull) {
+TEST_F(LiveJobs, JobBeyondTheQueueCompletesWithQueueFull) {
   const auto gate = hold(*strand);
   for (int i = 1; i <= 5; ++i) submit(i, {});
   EXPECT_THAT(wait_for(1), ElementsAre("5 queue_full"));

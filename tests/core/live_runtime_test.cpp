@@ -105,7 +105,7 @@ TEST(LiveRuntime, cancelled_timers_never_run) {
   EXPECT_FALSE(ran);
 }
 
-TEST(LiveRuntime, drops_counts_and_reports_what_does_not_fit) {
+TEST(LiveRuntime, drops_counts_and_reports_posts_beyond_the_queue) {
   LiveFailures failures;
   LiveParams params = failures.params();
   params.queue = 10;

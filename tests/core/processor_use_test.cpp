@@ -40,7 +40,7 @@ TEST(Answerable, a_wait_that_began_before_the_last_look_takes_no_more_than_there
             50ms);  // ran up to the last sample, reported late
 }
 
-TEST(ProcessorUse, tells_a_thread_that_sleeps_from_one_that_runs) {
+TEST(ProcessorUse, distinguishes_a_sleeping_thread_from_a_running_one) {
   std::promise<int> id;
   std::promise<void> end;
   std::thread sleeper([&] {

@@ -76,13 +76,13 @@ class RestartPolicyEngineTest : public testing::Test {
   std::vector<PartEvent::Kind> events{};
 };
 
-TEST_F(RestartPolicyEngineTest, WhoBeatsIsLeftAlone) {
+TEST_F(RestartPolicyEngineTest, DoesNotRestartAComponentWithAHeartbeat) {
   EXPECT_THAT(pass(60s), IsEmpty());
   EXPECT_EQ(state(0), PartState::up);
   EXPECT_THAT(events, IsEmpty());
 }
 
-TEST_F(RestartPolicyEngineTest, WhoFailedIsMadeAnewWithinATenthOfASecond) {
+TEST_F(RestartPolicyEngineTest, RestartsAFailedComponentWithinATenthOfASecond) {
   pass(1s);
   fail(1);
   EXPECT_THAT(poll(), IsEmpty());  // reported at once, restarted after the first pause
@@ -121,7 +121,7 @@ TEST_F(RestartPolicyEngineTest, AttemptsAreForgottenAfterTheWindow) {
   EXPECT_FALSE(restart_policy.escalated());
 }
 
-TEST_F(RestartPolicyEngineTest, WhoIsSilentIsReplacedWithinASecond) {
+TEST_F(RestartPolicyEngineTest, ReplacesASilentComponentWithinASecond) {
   pass(1s);
   stuck[1] = true;
   const Time hung_at = now;
@@ -134,7 +134,7 @@ TEST_F(RestartPolicyEngineTest, WhoIsSilentIsReplacedWithinASecond) {
   EXPECT_THAT(events, ElementsAre(PartEvent::Kind::hung, PartEvent::Kind::back));
 }
 
-TEST_F(RestartPolicyEngineTest, WhoGetsNoProcessorIsNotHungHoweverLongItIsSilent) {
+TEST_F(RestartPolicyEngineTest, SilenceWithoutProcessorTimeIsNoHang) {
   on_the_processor(0, 0.0, 1.0, true);  // it waits all the time
   stuck[0] = true;
   EXPECT_THAT(pass(60s), IsEmpty());
@@ -144,14 +144,14 @@ TEST_F(RestartPolicyEngineTest, WhoGetsNoProcessorIsNotHungHoweverLongItIsSilent
   EXPECT_THAT(events, IsEmpty());
 }
 
-TEST_F(RestartPolicyEngineTest, WhoGetsATenthOfAProcessorIsHungOnceItRanForTooLong) {
+TEST_F(RestartPolicyEngineTest, ComponentWithATenthOfAProcessorIsHungAfterEnoughCpuTime) {
   on_the_processor(0, 0.1, 0.9, true);
   stuck[0] = true;
   EXPECT_THAT(pass(4s), IsEmpty());
   EXPECT_THAT(pass(3s), ElementsAre(RestartAction{Kind::escalate, 0}));
 }
 
-TEST_F(RestartPolicyEngineTest, WhoIsBlockedIsHungWithinASecondWhileAnotherIsStarved) {
+TEST_F(RestartPolicyEngineTest, BlockedComponentIsHungWithinASecondWhileAnotherIsStarved) {
   on_the_processor(0, 0.0, 1.0, true);
   stuck[0] = stuck[1] = true;
   samples[1].use = ProcessorUse{.ran = 1s, .waited = 2s};  // and stays that
@@ -159,7 +159,7 @@ TEST_F(RestartPolicyEngineTest, WhoIsBlockedIsHungWithinASecondWhileAnotherIsSta
   EXPECT_THAT(pass(150ms), ElementsAre(RestartAction{Kind::replace, 1}));
 }
 
-TEST_F(RestartPolicyEngineTest, WhoBlocksAfterItStarvedIsHungWithinASecondFromThen) {
+TEST_F(RestartPolicyEngineTest, BlockedComponentIsHungASecondAfterItsStarvationEnded) {
   on_the_processor(0, 0.0, 1.0, true);
   stuck[0] = true;
   EXPECT_THAT(pass(10s), IsEmpty());
@@ -192,7 +192,7 @@ TEST_F(RestartPolicyEngineTest, TheSecondHangEscalates) {
   EXPECT_THAT(pass(1s), ElementsAre(RestartAction{Kind::escalate, 1}));
 }
 
-TEST_F(RestartPolicyEngineTest, WhatCannotBeReplacedEscalatesAtTheFirstHang) {
+TEST_F(RestartPolicyEngineTest, EscalatesAtTheFirstHangOfAnIrreplaceableComponent) {
   stuck[0] = true;
   EXPECT_THAT(pass(1s), ElementsAre(RestartAction{Kind::escalate, 0}));
   EXPECT_THAT(events, ElementsAre(PartEvent::Kind::hung, PartEvent::Kind::escalated));
@@ -207,7 +207,7 @@ TEST_F(RestartPolicyEngineTest, AMachineThatSleptDoesNotLookHung) {
   }
 }
 
-TEST_F(RestartPolicyEngineTest, WhoNeverComesUpIsHung) {
+TEST_F(RestartPolicyEngineTest, ComponentThatNeverComesUpIsHung) {
   comes_up = false;
   fail(1);
   EXPECT_THAT(pass(100ms), ElementsAre(RestartAction{Kind::restart, 1}));
@@ -235,7 +235,7 @@ TEST_F(RestartPolicyEngineTest, AHungOneOfTheOperatorsIsSilencedAndReplacedOnHis
   EXPECT_THAT(decision->actions, ElementsAre(RestartAction{Kind::replace, 1}));
 }
 
-TEST_F(RestartPolicyEngineTest, RefusesWhatCannotBe) {
+TEST_F(RestartPolicyEngineTest, RefusesUnknownComponentsAndUnsupportedPolicies) {
   EXPECT_EQ(restart_policy.restart("wheels", now).reason(), Reason::bad_argument);
   EXPECT_EQ(restart_policy.set_policy("wheels", RestartPolicy::automatic, now).reason(),
             Reason::bad_argument);

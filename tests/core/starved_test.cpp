@@ -113,7 +113,7 @@ class Starved : public testing::Test {
                          [this](Time) { set([&] { ++looks; }); }}};
 };
 
-TEST_F(Starved, WhoWaitsForTheProcessorIsLeftAloneAndATrueHangBesideItIsFound) {
+TEST_F(Starved, DoesNotRestartAStarvedComponentAndFindsATrueHangBesideIt) {
   let_rivals_in();
   starved.slot()->strand->post([this] {
     stay_on_one_processor();
@@ -137,7 +137,7 @@ TEST_F(Starved, WhoWaitsForTheProcessorIsLeftAloneAndATrueHangBesideItIsFound) {
   EXPECT_EQ(starved.instance(), 1u);
 }
 
-TEST_F(Starved, WhoRunsForTooLongWithoutReturningIsFound) {
+TEST_F(Starved, FindsAComponentThatRunsForTooLongWithoutReturning) {
   starved.slot()->strand->post([this] {
     const Duration until = processor_time() + 30s;
     while (processor_time() < until && !rivals_end) {

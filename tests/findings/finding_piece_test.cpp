@@ -99,9 +99,9 @@ TEST(FindingPiece, WithoutFindingsOrWithOneThatIsNoneIsRefused) {
 }
 
 TEST(FindingPiece, WithADamagedByteIsRefused) {
-  const store::Bytes whole = encode(some_piece());
-  for (std::size_t at = 1; at < whole.size(); ++at) {
-    store::Bytes bytes = whole;
+  const store::Bytes complete = encode(some_piece());
+  for (std::size_t at = 1; at < complete.size(); ++at) {
+    store::Bytes bytes = complete;
     bytes[at] ^= 0x10;
     EXPECT_EQ(decode_piece(bytes).reason(), Reason::malformed) << at;
   }

@@ -42,7 +42,7 @@ TEST_F(FindingSourceTest, AfterAGapTheMostImportantComeFirst) {
   EXPECT_THAT(sent, ElementsAre(8, 7, 6, 5, 4, 3, 2, 1)) << "whatever the length of the gap";
 }
 
-TEST_F(FindingSourceTest, WhatIsNotAcknowledgedIsRepeatedMoreAndMoreSeldom) {
+TEST_F(FindingSourceTest, RepeatsUnacknowledgedFindingsAtGrowingIntervals) {
   run(1s);
   ops[0].disk->set_full(true);  // Its receipts come, but not for the finding.
   ops[1].heard = false;
@@ -68,7 +68,7 @@ TEST_F(FindingSourceTest, AStationThatComesLaterGetsAllOfThem) {
   EXPECT_EQ(ops[1].desk->all().size(), 8u);
 }
 
-TEST_F(FindingSourceTest, AStationHeardAgainGetsAtOnceWhatWasRepeatedSeldomBefore) {
+TEST_F(FindingSourceTest, SendsAtOnceToAStationThatIsHeardAgain) {
   run(1s);
   for (Operator& op : ops) op.disk->set_full(true);
   report(1);
@@ -102,7 +102,7 @@ TEST_F(FindingSourceTest, SurvivesARestartOfTheRobot) {
   EXPECT_EQ(ops[0].desk->all().size(), 2u);
 }
 
-TEST_F(FindingSourceTest, AStationThatWasStartedAgainHasWhatItHad) {
+TEST_F(FindingSourceTest, RestartedStationStillHasItsFindings) {
   report(1);
   run(3s);
   ops[0].heard = false;
@@ -117,7 +117,7 @@ TEST_F(FindingSourceTest, AStationThatWasStartedAgainHasWhatItHad) {
   EXPECT_THAT(sent, Each(2u)) << "it is known by its identity";
 }
 
-TEST_F(FindingSourceTest, WhatWasOnItsWayToAStationThatWasStartedAgainComesAgain) {
+TEST_F(FindingSourceTest, RepeatsFindingsInFlightToARestartedStation) {
   run(1s);
   ops[1].heard = false;
   ops[0].disk->set_full(true);
@@ -131,7 +131,7 @@ TEST_F(FindingSourceTest, WhatWasOnItsWayToAStationThatWasStartedAgainComesAgain
   EXPECT_EQ(ops[0].desk->all().size(), 1u);
 }
 
-TEST_F(FindingSourceTest, AStationAcknowledgesOnlyWhatIsOnItsDisk) {
+TEST_F(FindingSourceTest, StationAcknowledgesOnlyFindingsOnItsDisk) {
   ops[1].heard = false;
   ops[0].disk->set_full(true);
   report(1);
@@ -163,7 +163,7 @@ TEST_F(FindingSourceTest, AFullStationLeavesItWithTheRobotAndAcknowledgesTheOthe
   EXPECT_LE(sent.size(), 9u) << "two findings, each every 16 s";
 }
 
-TEST_F(FindingSourceTest, WhenFullWhatAStationHasIsGivenUpFirst) {
+TEST_F(FindingSourceTest, DropsAcknowledgedFindingsFirstWhenFull) {
   ops[1].heard = false;
   report(1, 9);
   run(3s);
@@ -175,7 +175,7 @@ TEST_F(FindingSourceTest, WhenFullWhatAStationHasIsGivenUpFirst) {
   EXPECT_EQ(full, 0);
 }
 
-TEST_F(FindingSourceTest, WhenFullWhatMattersLeastIsGivenUpAndReported) {
+TEST_F(FindingSourceTest, DropsTheLeastImportantFindingWhenFullAndReportsIt) {
   ops[0].heard = ops[1].heard = false;
   for (std::uint64_t id = 1; id <= 8; ++id) report(id, static_cast<std::uint8_t>(id));
   EXPECT_EQ(report(20, 5), 20u);
@@ -210,13 +210,13 @@ TEST_F(FindingSourceTest, GivesAnIdToOneThatHasNone) {
   EXPECT_EQ(source->size(), 2u);
 }
 
-TEST_F(FindingSourceTest, RefusesWhatIsNoFinding) {
+TEST_F(FindingSourceTest, RefusesAnInvalidFinding) {
   findings::Finding f = some(1);
   f.kind.clear();
   EXPECT_EQ(source->report(f).reason(), Reason::bad_argument);
 }
 
-TEST_F(FindingSourceTest, IgnoresReceiptsOfWhatItDidNotSend) {
+TEST_F(FindingSourceTest, IgnoresReceiptsOfFindingsThatItDidNotSend) {
   run(1s);
   sender->acknowledged({ops[0].id, ops[0].start, {session, 50, {~std::uint64_t{0}, 0}}}, strand->now());
   report(7);

@@ -25,8 +25,8 @@ class FindingStoreTest : public testing::Test {
     finding_store = std::make_unique<FindingStore>(
         params, disk, *strand, nullptr,
         FindingStore::Outputs{
-            [this](const Key& key) { kept.push_back(key.id); },
-            [this](bool failing, const std::string&) { told.push_back(failing ? "failing" : "works"); }});
+            [this](const Key& key) { stored.push_back(key.id); },
+            [this](bool failing, const std::string&) { reported.push_back(failing ? "failing" : "works"); }});
     loaded = finding_store->load();
   }
   void run(Duration time) { scheduler.run_until(scheduler.elapsed() + time); }
@@ -35,8 +35,8 @@ class FindingStoreTest : public testing::Test {
   std::unique_ptr<Runtime> machine{scheduler.machine("r1", 5s)};
   std::shared_ptr<Executor> strand{machine->strand("command")};
   std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
-  std::vector<std::uint64_t> kept{};
-  std::vector<std::string> told{};
+  std::vector<std::uint64_t> stored{};
+  std::vector<std::string> reported{};
   std::unique_ptr<FindingStore> finding_store{};
   LoadReport loaded{};
 };
@@ -47,7 +47,7 @@ TEST_F(FindingStoreTest, KeepsOverARestart) {
   EXPECT_TRUE(finding_store->put(some(2)));
   EXPECT_FALSE(finding_store->is_stored({"r1", 1}));
   run(20ms);
-  EXPECT_THAT(kept, ElementsAre(1, 2));
+  EXPECT_THAT(stored, ElementsAre(1, 2));
   EXPECT_TRUE(finding_store->is_stored({"r1", 2}));
   make();
   EXPECT_EQ(finding_store->all().size(), 2u);
@@ -82,11 +82,11 @@ TEST_F(FindingStoreTest, ABurstIsWrittenInBatches) {
   make();
   for (std::uint64_t id = 1; id <= 100; ++id) EXPECT_TRUE(finding_store->put(some(id)));
   run(4ms);
-  EXPECT_EQ(kept.size(), 1u);
+  EXPECT_EQ(stored.size(), 1u);
   run(4ms);
-  EXPECT_EQ(kept.size(), 17u);
+  EXPECT_EQ(stored.size(), 17u);
   run(100ms);
-  EXPECT_EQ(kept.size(), 100u);
+  EXPECT_EQ(stored.size(), 100u);
 }
 
 TEST_F(FindingStoreTest, DamagedFilesAreStoredUnderAnotherName) {
@@ -164,13 +164,13 @@ TEST_F(FindingStoreTest, OneFileThatCannotBeWrittenBlocksNoOther) {
   disk->set_refused(file_name({"r1", 1}), true);
   for (std::uint64_t id = 1; id <= 40; ++id) EXPECT_TRUE(finding_store->put(some(id)));
   run(1500ms);
-  EXPECT_EQ(kept.size(), 39u);
+  EXPECT_EQ(stored.size(), 39u);
   EXPECT_FALSE(finding_store->is_stored({"r1", 1}));
-  EXPECT_THAT(told, ElementsAre("failing"));
+  EXPECT_THAT(reported, ElementsAre("failing"));
   disk->set_refused(file_name({"r1", 1}), false);
   run(2s);
   EXPECT_TRUE(finding_store->is_stored({"r1", 1}));
-  EXPECT_THAT(told, ElementsAre("failing", "works"));
+  EXPECT_THAT(reported, ElementsAre("failing", "works"));
 }
 
 TEST_F(FindingStoreTest, AFullDiskIsTriedOnceARound) {
@@ -181,10 +181,10 @@ TEST_F(FindingStoreTest, AFullDiskIsTriedOnceARound) {
   const auto before = disk->steps();
   run(800ms);
   EXPECT_EQ(disk->steps(), before) << "no batch follows a batch of which nothing could be written";
-  EXPECT_THAT(told, ElementsAre("failing"));
+  EXPECT_THAT(reported, ElementsAre("failing"));
 }
 
-TEST(FindingStoreLive, WhatIsNotOnDiskYetIsWrittenAtACleanEnd) {
+TEST(FindingStoreLive, WritesUnsavedFindingsAtACleanEnd) {
   const store::ScratchFolder folder;
   LiveRuntime runtime;
   auto writer = runtime.strand("disk");
@@ -243,7 +243,7 @@ TEST(FindingStoreLive, ALostCompletionDoesNotEndItsWrites) {
   gone.get_future().wait();
 }
 
-TEST_F(FindingStoreTest, AFullDiskIsToldAndTriedAgain) {
+TEST_F(FindingStoreTest, ReportsAFullDiskAndTriesAgain) {
   make();
   disk->set_full(true);
   EXPECT_TRUE(finding_store->put(some(1)));
@@ -252,7 +252,7 @@ TEST_F(FindingStoreTest, AFullDiskIsToldAndTriedAgain) {
   disk->set_full(false);
   run(2s);
   EXPECT_TRUE(finding_store->is_stored({"r1", 1}));
-  EXPECT_THAT(told, ElementsAre("failing", "works"));
+  EXPECT_THAT(reported, ElementsAre("failing", "works"));
 }
 
 TEST_F(FindingStoreTest, WithoutADiskItIsMemory) {
@@ -260,7 +260,7 @@ TEST_F(FindingStoreTest, WithoutADiskItIsMemory) {
   make();
   EXPECT_TRUE(finding_store->put(some(1)));
   EXPECT_TRUE(finding_store->is_stored({"r1", 1}));
-  EXPECT_THAT(kept, ElementsAre(1));
+  EXPECT_THAT(stored, ElementsAre(1));
 }
 
 TEST_F(FindingStoreTest, ThatGoesDuringAWriteIsNotCalled) {
@@ -268,7 +268,7 @@ TEST_F(FindingStoreTest, ThatGoesDuringAWriteIsNotCalled) {
   EXPECT_TRUE(finding_store->put(some(1)));
   finding_store.reset();
   run(1s);
-  EXPECT_TRUE(kept.empty());
+  EXPECT_TRUE(stored.empty());
 }
 
 }  // namespace

@@ -58,9 +58,9 @@ TEST(Finding, ThatIsOutOfBoundsIsNone) {
 
 TEST(Finding, TakesAnyBytes) {
   Random random(1);
-  const store::Bytes whole = to_file(some(7));
+  const store::Bytes complete = to_file(some(7));
   for (int i = 0; i < 3000; ++i) {
-    store::Bytes junk = whole;
+    store::Bytes junk = complete;
     for (std::uint64_t edits = 1 + random.below(3); edits > 0; --edits)
       junk[random.below(junk.size())] = static_cast<std::uint8_t>(random.next());
     if (random.chance(0.3)) junk.resize(random.below(junk.size()));

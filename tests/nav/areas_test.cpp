@@ -292,7 +292,7 @@ TEST(Areas, TheLocalPlannerPassesNoBorder) {
     EXPECT_TRUE(areas.permits(outline(platform, plan.poses[i]), 0.0)) << i;
 }
 
-TEST(Areas, ExplorationLeavesOutWhatTheyForbid) {
+TEST(Areas, ExplorationLeavesOutForbiddenGround) {
   GridWorld world(100, 100);
   world.border();
   RoutePlanner planner(wheeled());

@@ -118,7 +118,7 @@ TEST_P(EveryPlatform, SeesAWallWithOneRing) {
   EXPECT_GT(run.truth.x, 7.5);
 }
 
-TEST_P(EveryPlatform, GetsBySomebodyWhoComesTowardsIt) {
+TEST_P(EveryPlatform, PassesAnOncomingPerson) {
   BoxWorld world{{{-2, 16, 1.75, 1.95}, {-2, 16, -1.95, -1.75}}};
   world.boxes.push_back({});
   ClosedLoop run(GetParam(), world, {0, 0, 0});

@@ -102,7 +102,7 @@ TEST(CollisionMonitor, LegsThatLookDownClimbStairsThatLookedLikeAWall) {
   EXPECT_EQ(legs.ask({0.6, 0, 0}, Policy::stop, 0.5).velocity.vx, 0.6);
 }
 
-TEST(CollisionMonitor, LegsStopBeforeWhatTheyCannotClimb) {
+TEST(CollisionMonitor, LegsStopBeforeStepsThatAreTooHigh) {
   for (const Box& box :
        {Box{1.5, 3, -3, 3, 0, 0.30}, Box{1.5, 3, -3, 3, 0.55, 0.62}, Box{1.5, 3, -3, 3, 0, 0.35}}) {
     Seen legs({box}, legged());
@@ -130,14 +130,14 @@ TEST(CollisionMonitor, SweepsTheArc) {
   EXPECT_EQ(seen.ask({1.2, 0, -1.1}).cause, Cause::none);
 }
 
-TEST(CollisionMonitor, WhatStandsBehindMattersToReverseOnly) {
+TEST(CollisionMonitor, ObstacleBehindStopsOnlyReverse) {
   Seen seen({{-0.7, -0.5, -1, 1}});
   EXPECT_EQ(seen.ask({1.5, 0, 0}).cause, Cause::none);
   EXPECT_NE(seen.ask({-1.0, 0, 0}).cause, Cause::none);
   EXPECT_GT(seen.drive({-1.0, 0, 0}, 6), 0.0);
 }
 
-TEST(CollisionMonitor, SidewaysForThoseWhoCan) {
+TEST(CollisionMonitor, LetsHolonomicRobotsDriveSideways) {
   Seen seen({{-1, 1, 0.8, 1.0}}, legged());
   EXPECT_EQ(seen.ask({0, -1, 0}).cause, Cause::none);
   EXPECT_GT(seen.drive({0, 1, 0}, 6), 0.0);
@@ -175,7 +175,7 @@ TEST(CollisionMonitor, TheNoiseOfAWallIsNoNearerWall) {
   }
 }
 
-TEST(CollisionMonitor, WhoTouchesSomethingMayLeaveIt) {
+TEST(CollisionMonitor, LetsARobotInContactLeave) {
   Seen seen({{0.325, 0.5, -1, 1}});
   EXPECT_TRUE(seen.ask({0.3, 0, 0}).velocity.zero());
   EXPECT_EQ(seen.ask({-0.3, 0, 0}).velocity, (Twist2{-0.3, 0, 0}));
@@ -204,13 +204,13 @@ TEST(CollisionMonitor, ManualIsLimitedAndNeverStopped) {
   EXPECT_LT(blocked.ask({0, 0, 1.5}, Policy::limit, 9).velocity.wz, 0.8) << "a corner's 0.3 m/s";
 }
 
-TEST(CollisionMonitor, ManualThatAskedForItIsStoppedByWhatIsSeenOnly) {
+TEST(CollisionMonitor, ManualStopIsOnlyForSeenObstacles) {
   const Seen blocked({{0.33, 0.5, -1, 1}});
   EXPECT_TRUE(blocked.ask({1, 0, 0}, Policy::stop_seen).velocity.zero());
   EXPECT_NEAR(blocked.ask({1, 0, 0}, Policy::stop_seen, 9).velocity.vx, 0.3, 1e-9);
 }
 
-TEST(CollisionMonitor, RemembersWhatTheLidarNoLongerSees) {
+TEST(CollisionMonitor, RemembersObstaclesThatTheLidarNoLongerSees) {
   // A crate 0.25 m high is below the lowest ray when it is right before the robot.
   Seen seen({{1.6, 1.9, -0.3, 0.3, 0.0, 0.25}});
   EXPECT_GT(seen.drive({0.8, 0, 0}, 8), 0.0);
@@ -291,7 +291,7 @@ struct Meeting {
   }
 };
 
-TEST(CollisionMonitor, StandsWhenSomebodyWalksIntoIt) {
+TEST(CollisionMonitor, StopsWhenAPersonWalksIntoIt) {
   for (const double speed : {0.6, 1.0, 1.5})
     for (const double wish : {0.5, 1.0, 2.0}) {
       Meeting m;
@@ -318,7 +318,7 @@ TEST(CollisionMonitor, WithoutItsTrackerItWouldStillMove) {
   EXPECT_GT(m.v.vx, 0.3);
 }
 
-TEST(CollisionMonitor, LetsItDriveAwayFromWhoCatchesItUp) {
+TEST(CollisionMonitor, LetsItDriveAwayFromAPersonWhoCatchesUp) {
   Meeting m;
   m.person = {-4, 0};
   m.touch({}, 0.6);
@@ -328,7 +328,7 @@ TEST(CollisionMonitor, LetsItDriveAwayFromWhoCatchesItUp) {
   EXPECT_GT(m.v.vx, 1.7);
 }
 
-TEST(CollisionMonitor, WaitsForWhoCrossesAndGoesOn) {
+TEST(CollisionMonitor, WaitsForACrossingPersonAndGoesOn) {
   Meeting m;
   m.pose.x = -2;
   m.person = {1.5, -3.5};
@@ -338,7 +338,7 @@ TEST(CollisionMonitor, WaitsForWhoCrossesAndGoesOn) {
   EXPECT_GT(m.pose.x, 1.5) << "behind him it went on";
 }
 
-TEST(CollisionMonitor, AnObstacleOfFewNoisyReturnsIsKeptFartherOff) {
+TEST(CollisionMonitor, StaysFartherFromAnObstacleOfFewNoisyReturns) {
   // At a blunt wall end and a corner, for a long time: one ring of 360 with 2 cm of noise.
   for (const Platform& p : {wheeled(), tracked(), legged()})
     for (std::uint64_t seed = 1; seed <= seeds(2, 6); ++seed)
@@ -381,10 +381,10 @@ double turns_towards_a_wall(double speed, double apart, double turn, const Odome
     if (i % 10 == 0) seen.look(time);
     const auto late = static_cast<std::size_t>(std::lround(odometer.late / kDt));
     const Twist2& was = driven[driven.size() - 1 - std::min(late, driven.size() - 1)];
-    const Twist2 told{odometer.share * was.vx, 0, odometer.share * was.wz};
+    const Twist2 reported{odometer.share * was.vx, 0, odometer.share * was.wz};
     if (i % 5 == 0)
       allowed =
-          seen.monitor.check({speed, 0, speed * turn}, seen.pose, time, Policy::stop, {told, allowed.vx})
+          seen.monitor.check({speed, 0, speed * turn}, seen.pose, time, Policy::stop, {reported, allowed.vx})
               .velocity;
     v.vx += std::clamp(allowed.vx - v.vx, -p.max_acceleration * kDt, p.max_acceleration * kDt);
     if (allowed.vx > 1e-3) bend += std::clamp(allowed.wz / allowed.vx - bend, -kBends * kDt, kBends * kDt);
@@ -424,7 +424,7 @@ TEST(CollisionMonitor, AVelocityThatIsNoneIsNotDriven) {
     EXPECT_EQ(seen.monitor.check(wanted, seen.pose, 0, Policy::stop, {moves}).velocity, allowed) << moves.vx;
 }
 
-TEST(CollisionMonitor, WhatRaysPassedIsNotRememberedHoweverNear) {
+TEST(CollisionMonitor, ForgetsNearPlacesThatRaysPass) {
   // Somebody who stood at the nose, nearer than the lidar sees, and left.
   Platform p = wheeled();
   CollisionMonitor monitor(p);

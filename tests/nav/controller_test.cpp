@@ -56,9 +56,9 @@ TEST(Controllers, AnUnknownNameIsAnError) {
 }
 
 TEST_P(ControllerTest, LearnsHowMuchOfATurnTheGroundSwallows) {
-  Platform told = tracked();
-  told.turn_slip = 0.0;  // and the ground takes a third
-  const auto follower = make(told);
+  Platform assumed = tracked();
+  assumed.turn_slip = 0.0;  // and the ground takes a third
+  const auto follower = make(assumed);
   Plan circle;
   circle.max_speed = 0.6;
   circle.pose_count = Plan::kMaxPath;
@@ -142,7 +142,7 @@ TEST_P(ControllerTest, AnEmptyPlanIsASmoothStopAndStopNowIsZeroAtOnce) {
   EXPECT_TRUE(follower.follow(pose, kControlPeriod).zero());
 }
 
-TEST_P(ControllerTest, GoesOnFromWhatWasSent) {
+TEST_P(ControllerTest, ContinuesFromTheVelocityThatWasSent) {
   const auto made = make(wheeled());
   Controller& follower = *made;
   follower.set_plan(straight(3.0));

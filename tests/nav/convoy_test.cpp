@@ -53,28 +53,29 @@ TEST(ConvoyTrail, APlaceBeforeItsBeginningHasANegativePosition) {
 }
 
 TEST(ConvoyTrail, PiecesArriveInAnyOrderAndTwice) {
-  const Trail whole = straight_trail(20.0);
+  const Trail complete = straight_trail(20.0);
   Trail trail;
-  EXPECT_TRUE(trail.add(20, points(whole, 20, 28)));
-  EXPECT_TRUE(trail.add(24, points(whole, 24, 32))) << "half of it is known";
-  EXPECT_TRUE(trail.add(36, points(whole, 36, 40))) << "adjacent to nothing: ignored";
+  EXPECT_TRUE(trail.add(20, points(complete, 20, 28)));
+  EXPECT_TRUE(trail.add(24, points(complete, 24, 32))) << "half of it is known";
+  EXPECT_TRUE(trail.add(36, points(complete, 36, 40))) << "adjacent to nothing: ignored";
   EXPECT_EQ(trail.end(), 32u);
-  EXPECT_TRUE(trail.add(12, points(whole, 12, 20)));
+  EXPECT_TRUE(trail.add(12, points(complete, 12, 20)));
   EXPECT_EQ(trail.first(), 12u);
-  for (std::uint32_t n = trail.first(); n < trail.end(); ++n) EXPECT_EQ(trail.point(n), whole.point(n)) << n;
+  for (std::uint32_t n = trail.first(); n < trail.end(); ++n)
+    EXPECT_EQ(trail.point(n), complete.point(n)) << n;
 }
 
 TEST(ConvoyTrail, PointsThatAreNoPathAreRefused) {
-  const Trail whole = straight_trail(20.0);
+  const Trail complete = straight_trail(20.0);
   Trail trail;
-  trail.add(0, points(whole, 0, 8));
+  trail.add(0, points(complete, 0, 8));
   const std::vector<Eigen::Vector3d> far{{4, 0, 0}, {40, 0, 0}}, beside{{4, 30, 0}, {4.5, 30, 0}};
   const std::vector<Eigen::Vector3d> unknown{{4, NAN, 0}, {4.5, 0, 0}};
   EXPECT_FALSE(trail.add(8, far));
   EXPECT_FALSE(trail.add(8, beside));
   EXPECT_FALSE(trail.add(8, unknown));
-  EXPECT_TRUE(trail.add(UINT32_MAX - 9, points(whole, 0, 8))) << "of the future: ignored";
-  EXPECT_FALSE(trail.add(UINT32_MAX - 4, points(whole, 0, 8)));
+  EXPECT_TRUE(trail.add(UINT32_MAX - 9, points(complete, 0, 8))) << "of the future: ignored";
+  EXPECT_FALSE(trail.add(UINT32_MAX - 4, points(complete, 0, 8)));
   EXPECT_EQ(trail.end(), 8u);
 }
 

@@ -60,7 +60,7 @@ TEST(Correspondence, AnObstacleAheadBlocksTheStraightPathFromWhereItStands) {
   EXPECT_TRUE(mask.test(PathTree::kFirstBit[4] + 3 * 7 + 3));  // up to 1.5 m
 }
 
-TEST(Correspondence, WhatIsInTheMarginAlreadyBlocksOnlyWaysIntoIt) {
+TEST(Correspondence, ObstacleInsideTheMarginBlocksOnlyPathsIntoIt) {
   const PathTree tree;
   const CorrespondenceGrid grid(tree, kBody);
   // Beside the body's left front, inside its margin.

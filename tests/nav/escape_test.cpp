@@ -78,7 +78,7 @@ TEST(Escape, LeavesAWallThatItTouches) {
     }
 }
 
-TEST(Escape, WhereNothingLeadsOutItNamesTheSide) {
+TEST(Escape, NamesTheBlockedSideWhenNoPathLeadsOut) {
   const Platform platform = tracked();
   Points cell;
   const double side = platform.width / 2 + 0.05, end = platform.length / 2 + 0.04;
@@ -90,7 +90,7 @@ TEST(Escape, WhereNothingLeadsOutItNamesTheSide) {
   EXPECT_EQ(way.side, Side::left);
 }
 
-TEST(Escape, WhereTenCentimetresAreFreeThereIsNothingToLeave) {
+TEST(Escape, HasNothingToLeaveWithTenCentimetresOfClearance) {
   Points wall;
   add_wall(wall, {-2, 0.36}, {2, 0.36});
   EXPECT_TRUE(drive(wheeled(), wall, {}).out);

@@ -57,7 +57,7 @@ TEST_F(GoalCheckTest, AGapNarrowerThanTheBodyIsTooNarrowAndAWallBesideThePlaceIs
   EXPECT_EQ(at(2.0, 0.25), Standing::occupied) << "0.15 m beside one wall";
 }
 
-TEST_F(GoalCheckTest, BeyondTheWallsNothingWasSeen) {
+TEST_F(GoalCheckTest, GroundBeyondTheWallsIsUnseen) {
   EXPECT_EQ(at(15, 3), Standing::unseen);
   EXPECT_EQ(judge(15, 3, false).standing, Standing::not_connected) << "the room is closed";
 }

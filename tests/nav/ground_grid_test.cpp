@@ -54,7 +54,7 @@ TEST(GroundGrid, SmallRisesAddUp) {
   EXPECT_NEAR(grid.at(3.05f, 0), 0.28f, 0.01f);
 }
 
-TEST(GroundGrid, StairsAreGroundToWhoClimbsThem) {
+TEST(GroundGrid, StairsAreGroundForAClimbingPlatform) {
   const Height stairs = [](float x, float) { return x > 1 ? 0.17f * std::ceil((x - 1) / 0.3f) : 0.0f; };
   EXPECT_GT(grid_of(stairs, {.rise = 0.245f}).at(3.0f, 0), 1.0f);
   EXPECT_LT(grid_of(stairs).at(3.0f, 0), 0.01f);
@@ -70,7 +70,7 @@ TEST(GroundGrid, ARampSeenByFarRingsIsGround) {
   EXPECT_NEAR(grid.at(3.45f, 0), 0.75f, 0.01f);
 }
 
-TEST(GroundGrid, WhatALevelRingSeesIsNoGround) {
+TEST(GroundGrid, ReturnsOfALevelRingAreNoGround) {
   GroundGrid grid({.slope = 0.6f, .rise = 0.245f, .most = 0.45f});
   grid.begin_scan(0, 0, 0);
   for (float y = -2; y < 2; y += 0.05f) grid.add(2.0f, y, 0.65f);
@@ -78,14 +78,14 @@ TEST(GroundGrid, WhatALevelRingSeesIsNoGround) {
   EXPECT_NEAR(grid.at(2.0f, 0), 0.0f, 1e-6f);
 }
 
-TEST(GroundGrid, WhereNothingWasSeenTheGroundLiesAsTheBodyDoes) {
+TEST(GroundGrid, UnmeasuredGroundFollowsTheBodysAttitude) {
   GroundGrid grid;
   grid.begin_scan(0, 0, 0);
   grid.grow({}, 0.7f, {0.1f, 0}, 0.5f, 1.0f);
   EXPECT_NEAR(grid.at(3.05f, -2.0f), 0.7f + 0.3f, 0.01f);
 }
 
-TEST(GroundGrid, RollsAndForgetsWhatItWrapsOver) {
+TEST(GroundGrid, ForgetsCellsThatTheRollingWindowOverwrites) {
   GroundGrid grid;
   grid.begin_scan(0, 0, 0);
   for (float j = -1; j < 1; j += 0.05f) grid.add(0.95f, j, 0.05f);
@@ -109,7 +109,7 @@ TEST(GroundGrid, ForgetsOldHeights) {
   EXPECT_NEAR(grid.at(0.5f, 0.1f), 0.0f, 1e-6f);
 }
 
-TEST(GroundGrid, TellsByHowMuchAScanLiesBesideTheMap) {
+TEST(GroundGrid, MeasuresTheHeightOffsetOfAScanFromTheMap) {
   const Height waves = [](float x, float y) { return 0.05f * std::sin(x) * std::cos(y); };
   GroundGrid grid = grid_of(waves);
   see(grid, waves, 0.1f, 0, 0.1f, -0.04f);  // an odometry that does not know of its robot's climb of 4 cm
@@ -126,7 +126,7 @@ TEST(RoundDown, RoundsDownOnBothSides) {
 }
 
 // The side of a ramp of low steps: passable at its foot, too high from x = 0.5 m on.
-TEST(Surface, WhereAStepGetsTooHighIsKnownToTheCell) {
+TEST(Surface, FindsTheCellWhereAStepBecomesTooHigh) {
   const GroundGrid grid = grid_of(
       [](float x, float y) { return x < 0 || y > 0.9f ? 0.0f
                                     : x < 0.5f        ? 0.06f

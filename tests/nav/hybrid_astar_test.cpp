@@ -159,7 +159,7 @@ std::vector<ObstaclePoint> seen_from(const Pose2& place, std::vector<ObstaclePoi
   return points;
 }
 
-TEST(HybridAStarSearch, GetsThroughAGapTenCentimetresWiderFromWhereverItStands) {
+TEST(HybridAStarSearch, PassesAGapTenCentimetresWiderFromEveryStart) {
   const Platform platform = car();
   const auto wall = wall_with_gap(2.5f, static_cast<float>(platform.width) + 0.1f);
   const Footprint body(platform);
@@ -295,7 +295,7 @@ TEST(HybridAStarPlanner, CreepsOnlyWhereItIsTight) {
   EXPECT_LE(plan.max_speed, 0.3);
 }
 
-TEST(AirMap, KnowsWhatIsAtItsHeightAndForgetsWhatLeft) {
+TEST(AirMap, MapsObstaclesAtItsHeightAndForgetsThoseThatLeft) {
   const Platform p = aerial();
   AirMap map(p);
   // A flat floor a metre below, a table beneath, a wall ahead, a lamp above.

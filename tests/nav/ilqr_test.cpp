@@ -86,7 +86,7 @@ TYPED_TEST(IlqrTest, NoSmallChangeOfAnyControlIsBetter) {
       }
 }
 
-TYPED_TEST(IlqrTest, CeresFindsNothingBetter) {
+TYPED_TEST(IlqrTest, CostIsAsLowAsThatOfCeres) {
   IlqrParams params;
   params.iterations = 100;
   params.tolerance = 1e-10;
@@ -120,7 +120,7 @@ TYPED_TEST(IlqrTest, AJacobianIsTheDerivativeOfTheTwist) {
   }
 }
 
-TYPED_TEST(IlqrTest, WhatIsNotANumberDoesNoHarm) {
+TYPED_TEST(IlqrTest, IgnoresInputThatIsNotFinite) {
   auto references = this->ahead(0);
   references[7].pose.x = std::nan("");
   this->solver.solve(this->at({}, {}), references);

@@ -96,7 +96,7 @@ int draws() {
 }
 
 // An obstacle of 0.30 m at 1 m, seen with the body at up to 10 degrees of roll and pitch, is never missed.
-TEST(MonitorTilt, ABodyThatLeansSeesWhatALevelOneSees) {
+TEST(MonitorTilt, TiltedBodySeesTheSameObstaclesAsALevelOne) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> bearing(-M_PI, M_PI);
   const UprightRangeImage nothing{};
@@ -116,7 +116,7 @@ TEST(MonitorTilt, ABodyThatLeansSeesWhatALevelOneSees) {
 
 // A lidar that sees the box from afar only: what was seen is remembered where it is, however the body leans
 // later.
-TEST(MonitorTilt, WhatWasSeenOnTheWayIsRemembered) {
+TEST(MonitorTilt, RemembersObstaclesSeenOnTheWay) {
   std::mt19937 random(2);
   int missed = 0;
   for (int n = 0; n < 100; ++n) {

@@ -34,7 +34,7 @@ void expect_none_caused(const SimDrive& d, std::uint64_t seed) {
 
 class StaticWorld : public testing::TestWithParam<const char*> {};
 
-TEST_P(StaticWorld, NothingMovesHoweverTheRobotDrives) {
+TEST_P(StaticWorld, FindsNoMoverInAnyDrive) {
   for (const bool full : {false, true}) {
     const auto made = sim::generate_world(GetParam(), full ? 2 : 1).value();
     const auto world = std::make_shared<const sim::World>(*sim::make_box_world(made.boxes, 0, 3));
@@ -53,7 +53,7 @@ TEST_P(StaticWorld, NothingMovesHoweverTheRobotDrives) {
 INSTANTIATE_TEST_SUITE_P(All, StaticWorld, testing::Values("corridor", "cave", "rubble", "rooms", "car_park"),
                          [](const auto& each) { return std::string(each.param); });
 
-TEST(Moving, AmongPeopleWhoYieldTwoRobotsReachTheirGoalsAndTouchNobody) {
+TEST(Moving, TwoRobotsReachTheirGoalsAmongYieldingPeopleWithoutContact) {
   for (std::uint64_t seed = 1; seed <= seeds(1, 4); ++seed) {
     SimDrive d(
         corridor(4.0), {{"r1", wheeled(), {0, 0, 0}}, {"r2", wheeled(), {30, 0, M_PI}}},
@@ -66,7 +66,7 @@ TEST(Moving, AmongPeopleWhoYieldTwoRobotsReachTheirGoalsAndTouchNobody) {
   }
 }
 
-TEST(Moving, WhoYieldsToNobodyFindsTheRobotStanding) {
+TEST(Moving, RobotCausesNoContactWithPeopleWhoDoNotYield) {
   for (std::uint64_t seed = 1; seed <= seeds(1, 4); ++seed) {
     SimDrive d(corridor(4.0), {{"r1", wheeled(), {0, 0, 0}}},
                planar(seed, {{{{24, 0.2}, {-3, -0.2}}, 1.5, false}, {{{20, -1.2}, {2, 1.2}}, 1.2, false}}));

@@ -9,7 +9,7 @@ namespace adit::nav::test {
 namespace {
 
 /// A hall of 10 x 6 m; a wall across it at x = 5 m with a gap from y = `low` to `high`, cells of 0.1 m.
-void tell_hall(RoutePlanner& planner, int low, int high) {
+void set_hall(RoutePlanner& planner, int low, int high) {
   GridWorld world(100, 60);
   world.border();
   world.fill(50, 52, 0, 60);
@@ -19,7 +19,7 @@ void tell_hall(RoutePlanner& planner, int low, int high) {
 
 TEST(NarrowPassage, IsTheMiddleOfAGapAndPointsThroughIt) {
   RoutePlanner planner(wheeled());
-  tell_hall(planner, 27, 33);
+  set_hall(planner, 27, 33);
   for (const bool back : {false, true}) {
     const Eigen::Vector3d a{3.5, 1.5, 0}, b{6.5, 4.5, 0};
     const Route route = back ? planner.plan(b, a) : planner.plan(a, b);
@@ -35,7 +35,7 @@ TEST(NarrowPassage, IsTheMiddleOfAGapAndPointsThroughIt) {
 
 TEST(NarrowPassage, ItIsAsNarrowForARouteBesideItsMiddle) {
   RoutePlanner planner(car());
-  tell_hall(planner, 26, 33);  // 10 cm wider than it is; 20 cm from cell to cell
+  set_hall(planner, 26, 33);  // 10 cm wider than it is; 20 cm from cell to cell
   for (const double y : {2.86, 2.95, 3.04}) {
     const std::vector<Eigen::Vector3d> points{{3.5, y, 0}, {6.5, y, 0}};
     const auto passage = planner.passage(points, 5.0);
@@ -63,7 +63,7 @@ TEST(NarrowPassage, ADoorAtTheEndOfAPassageIsOneThePassageIsNot) {
 
 TEST(NarrowPassage, AWideOpeningAndOneWallAreNone) {
   RoutePlanner planner(wheeled());
-  tell_hall(planner, 20, 40);
+  set_hall(planner, 20, 40);
   const Route through = planner.plan({3.5, 1.5, 0}, {6.5, 4.5, 0});
   ASSERT_TRUE(through.found());
   EXPECT_FALSE(planner.passage(through.points, 5.0));
@@ -74,7 +74,7 @@ TEST(NarrowPassage, AWideOpeningAndOneWallAreNone) {
 
 TEST(NarrowPassage, FartherThanAskedForOrWhereTheRouteBeginsItIsNone) {
   RoutePlanner planner(wheeled());
-  tell_hall(planner, 27, 33);
+  set_hall(planner, 27, 33);
   const Route far = planner.plan({1, 3, 0}, {9, 3, 0});
   ASSERT_TRUE(far.found());
   EXPECT_FALSE(planner.passage(far.points, 2.0));
@@ -83,10 +83,10 @@ TEST(NarrowPassage, FartherThanAskedForOrWhereTheRouteBeginsItIsNone) {
   EXPECT_FALSE(planner.passage(within.points, 4.0));
 }
 
-TEST(NarrowPassage, WhatTheBodyDoesNotNeedToMeetStraightIsNone) {
+TEST(NarrowPassage, WideGapIsNoPassage) {
   for (const auto& [high, is_passage] : {std::pair{33, true}, std::pair{34, false}}) {  // 0.7 and 0.8 m
     RoutePlanner planner(wheeled());
-    tell_hall(planner, 27, high);
+    set_hall(planner, 27, high);
     const std::vector<Eigen::Vector3d> points{{3.5, 3, 0}, {6.5, 3, 0}};
     EXPECT_EQ(planner.passage(points, 5.0).has_value(), is_passage) << high;
   }
@@ -113,7 +113,7 @@ TEST(NarrowPassage, SidesThatAreNotOppositeEachOtherAreFittedByTheWidestStrip) {
 
 TEST(NarrowPassage, TheKeeperLeadsBehindItOnItsAxis) {
   RoutePlanner planner(wheeled());
-  tell_hall(planner, 27, 33);
+  set_hall(planner, 27, 33);
   RouteFollower route_follower;
   const Eigen::Vector3d goal{8, 1.5, 0};
   const RouteStep aside = route_follower.step(planner, {4.2, 1.5, 0}, goal, false, 0.0);
@@ -129,7 +129,7 @@ TEST(NarrowPassage, TheKeeperLeadsBehindItOnItsAxis) {
 /// nearer.
 double middle_seen_again_from(double x) {
   RoutePlanner planner(wheeled());
-  tell_hall(planner, 27, 33);
+  set_hall(planner, 27, 33);
   RouteFollower route_follower;
   const Eigen::Vector3d goal{8, 3.0, 0};
   route_follower.step(planner, {x, 3.0, 0}, goal, false, 0.0);
@@ -138,7 +138,7 @@ double middle_seen_again_from(double x) {
   return route_follower.step(planner, {x, 3.0, 0}, goal, false, 0.1).passage.value().middle.y();
 }
 
-TEST(NarrowPassage, SeenFromNearItIsKeptForLessThanTenCentimetres) {
+TEST(NarrowPassage, StaysWhenANearViewShiftsItByLessThanTenCentimetres) {
   EXPECT_NEAR(middle_seen_again_from(2.3), 2.95, 0.01) << "2.8 m before it";
   EXPECT_NEAR(middle_seen_again_from(3.5), 3.0, 0.01) << "1.6 m before it";
 }
@@ -186,7 +186,7 @@ TEST(NarrowPassage, ACarPassesAGapTenCentimetresWiderThanItself) {
 
 TEST(NarrowPassage, ItGoesStraightOnUntilItHasLeftIt) {
   RoutePlanner planner(wheeled());
-  tell_hall(planner, 27, 33);
+  set_hall(planner, 27, 33);
   RouteFollower route_follower;
   const Eigen::Vector3d goal{8, 1.0, 0};
   for (const double x : {4.0, 4.6, 5.1, 5.5}) {
@@ -197,9 +197,9 @@ TEST(NarrowPassage, ItGoesStraightOnUntilItHasLeftIt) {
   EXPECT_LT(route_follower.step(planner, {5.8, 3.0, 0}, goal, false, 6.0).target.y(), 2.4);
 }
 
-TEST(NarrowPassage, WhoFindsItsOwnWayMayBackOffOnceBeforeTheGapIsBlocked) {
+TEST(NarrowPassage, PlannerMayBackOffOnceBeforeTheGapCountsAsBlocked) {
   RoutePlanner planner(car());
-  tell_hall(planner, 26, 33);
+  set_hall(planner, 26, 33);
   RouteFollower route_follower(car());
   const Eigen::Vector3d goal{8, 1.0, 0}, place{4.4, 3.1, 0};
   for (const double t : {0.0, 0.5, 1.6, 3.0, 4.5})
@@ -211,7 +211,7 @@ TEST(NarrowPassage, WhoFindsItsOwnWayMayBackOffOnceBeforeTheGapIsBlocked) {
 
 TEST(NarrowPassage, BackingOffIsNotCutShortByACycleThatWasFree) {
   RoutePlanner planner(car());
-  tell_hall(planner, 26, 33);
+  set_hall(planner, 26, 33);
   RouteFollower route_follower(car());
   const Eigen::Vector3d goal{8, 1.0, 0}, place{4.4, 3.1, 0};
   for (const double t : {0.0, 0.5, 1.6}) route_follower.step(planner, place, goal, true, t);
@@ -222,9 +222,9 @@ TEST(NarrowPassage, BackingOffIsNotCutShortByACycleThatWasFree) {
   EXPECT_TRUE(planner.has_blocked_places());
 }
 
-TEST(NarrowPassage, WhoIsBlockedBehindItDoesNotBackOffIntoIt) {
+TEST(NarrowPassage, BlockedBehindThePassageCountsAtOnce) {
   RoutePlanner planner(car());
-  tell_hall(planner, 26, 33);
+  set_hall(planner, 26, 33);
   RouteFollower route_follower(car());
   const Eigen::Vector3d goal{8, 3.0, 0};
   route_follower.step(planner, {4.4, 3.0, 0}, goal, false, 0.0);
@@ -232,9 +232,9 @@ TEST(NarrowPassage, WhoIsBlockedBehindItDoesNotBackOffIntoIt) {
   EXPECT_TRUE(planner.has_blocked_places());
 }
 
-TEST(NarrowPassage, WhoIsBlockedFarBeforeItLooksForAnotherWay) {
+TEST(NarrowPassage, BlockedFarBeforeThePassageCountsAtOnce) {
   RoutePlanner planner(wheeled());
-  tell_hall(planner, 27, 33);
+  set_hall(planner, 27, 33);
   RouteFollower route_follower;
   for (const double t : {0.0, 0.5, 1.6, 2.7})
     route_follower.step(planner, {2.5, 3.05, 0}, {8, 1.0, 0}, true, t);

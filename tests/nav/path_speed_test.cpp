@@ -31,7 +31,7 @@ std::vector<ObstaclePoint> wall(float x0, float x1, float y) {
   return cells;
 }
 
-TEST(PathSpeed, NothingNearIsFullSpeed) {
+TEST(PathSpeed, IsFullWithoutNearObstacles) {
   EXPECT_NEAR(speed(path(false), {}), wheeled().max_speed, 1e-4);
   EXPECT_NEAR(speed(path(false), wall(-1, 4, 2.5f)), wheeled().max_speed, 1e-4);
 }
@@ -46,14 +46,14 @@ TEST(PathSpeed, TheNearerTheSlower) {
   EXPECT_LT(speed(path(false), wall(-1, 4, 0.30f)), 0.5);
 }
 
-TEST(PathSpeed, WhatIsNearLaterCountsByTheWayLeftToBrake) {
+TEST(PathSpeed, LaterObstaclesCountByTheRemainingBrakingDistance) {
   const double soon = speed(path(false), wall(0.6f, 1.0f, 0.3f)),
                later = speed(path(false), wall(2, 2.4f, 0.3f));
   EXPECT_GT(later, soon + 0.3);
   EXPECT_LT(later, wheeled().max_speed);
 }
 
-TEST(PathSpeed, SlowsWhereThePathLeavesWhatIsSeen) {
+TEST(PathSpeed, SlowsWhereThePathEntersHiddenSpace) {
   Platform sluggish = wheeled();
   sluggish.max_acceleration = 0.6;  // it needs 4.8 m from full speed
   PathSpeedParams heedless{};

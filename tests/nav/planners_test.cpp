@@ -76,7 +76,7 @@ TEST_P(EveryPlanner, DrivesRoundACrate) {
   EXPECT_GT(run.least_clearance, 0.03);
 }
 
-TEST_P(EveryPlanner, SaysBlockedWhereItIsWalledIn) {
+TEST_P(EveryPlanner, ReportsBlockedWhenWalledIn) {
   BoxWorld world{
       {{0.55, 0.7, -0.7, 0.7}, {-0.7, -0.55, -0.7, 0.7}, {-0.7, 0.7, 0.55, 0.7}, {-0.7, 0.7, -0.7, -0.55}}};
   ClosedLoop run(platform_, world, {0, 0, 0}, tracks_);

@@ -36,7 +36,7 @@ struct Places {
   }
 };
 
-TEST(Prediction, WhoCrossesIsWhereTheRobotMeetsHim) {
+TEST(Prediction, CrossingMoverIsAnObstacleWhereThePathsMeet) {
   // At 1.5 m/s the robot is 2.4 m ahead after 1.6 s; he walks from 2.4 m on the right across its way.
   const Places places(somebody(2.4f, -2.4f, 0, 1.5f), 1.5);
   EXPECT_GT(places.cost(2.4f, 0.0f), 0.0f);
@@ -44,12 +44,12 @@ TEST(Prediction, WhoCrossesIsWhereTheRobotMeetsHim) {
   EXPECT_EQ(Places(somebody(2.4f, -2.4f, 0, -1.5f), 1.5).cost(2.4f, 0.0f), 0.0f) << "he walks away";
 }
 
-TEST(Prediction, WhoIsGoneWhenTheRobotComesIsNotInItsWay) {
+TEST(Prediction, MoverThatHasPassedIsNoObstacle) {
   const Places places(somebody(3.0f, 0.0f, 0, 1.5f), 0.2);
   EXPECT_EQ(places.cost(3.0f, 0.0f), 0.0f);
 }
 
-TEST(Prediction, WhatComesSoonIsTakenAndWhatComesLaterAvoided) {
+TEST(Prediction, NearPredictionsBlockAndLaterOnesCost) {
   const Places places(somebody(3.5f, 0.3f, -1.5f, 0), 1.0);
   float first = 0, later = 1;
   for (const ObstaclePoint& p : places.points) {
@@ -60,7 +60,7 @@ TEST(Prediction, WhatComesSoonIsTakenAndWhatComesLaterAvoided) {
   EXPECT_LT(later, 1.0f);
 }
 
-TEST(Prediction, WhoComesHeadOnIsGivenTheLeft) {
+TEST(Prediction, OncomingMoverRaisesTheCostOnTheLeft) {
   for (const double turned : {0.0, 2.0}) {
     const Pose2 pose{1, 2, turned};
     const Eigen::Vector2f at = (pose * Eigen::Vector2d(3.0, 0.0)).cast<float>();
@@ -73,7 +73,7 @@ TEST(Prediction, WhoComesHeadOnIsGivenTheLeft) {
   EXPECT_EQ(Places(somebody(3.0f, 1.5f, -1.5f, 0), 1.0).cost(1.5f, 2.2f), 0.0f) << "he passes beside it";
 }
 
-TEST(Prediction, NothingOfWhoStandsNorWithinTheBodyNorBeyondTheRoom) {
+TEST(Prediction, LeavesOutStationaryMoversTheBodyAndWhatExceedsTheCapacity) {
   EXPECT_TRUE(Places(somebody(2, 0, 0, 0), 1.0).points.empty());
   const Footprint body(wheeled());
   for (const ObstaclePoint& p : Places(somebody(2, 0, -1.5f, 0), 0.0).points)

@@ -6,7 +6,7 @@
 namespace adit::nav::test {
 namespace {
 
-TEST(ProgressChecker, WhoComesNearerIsNotStuck) {
+TEST(ProgressChecker, ShorterRouteIsProgress) {
   ProgressChecker checker;
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(checker.stuck(20.0 - 0.1 * i, false, 2.0 * i)) << i;
 }

@@ -17,7 +17,7 @@ TurnRoom room_with(double x, double y) {
   return room;
 }
 
-TEST(Rotation, NothingNearLeavesAllRoom) {
+TEST(Rotation, IsUnlimitedWithoutNearObstacles) {
   EXPECT_TRUE(room_with(0.6, 0.0).full());
   EXPECT_TRUE(room_with(0.0, -0.5).full());
 }

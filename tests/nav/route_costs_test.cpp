@@ -45,7 +45,7 @@ TEST(RouteCosts, AreThoseOfOnePlanForEachGoal) {
   EXPECT_LT(sum / found, 1.12);
 }
 
-TEST(RouteCosts, EndWithoutASearchOfTheWholeMap) {
+TEST(RouteCosts, EndWithoutASearchOfTheCompleteMap) {
   GridWorld world(400, 100);
   world.border();
   RoutePlanner planner(wheeled(), known_only());

@@ -41,7 +41,7 @@ TEST(RoutePlanner, ClearForgetsEverything) {
 
 // What passed for ground a step and a slope up, once, makes no floor of its own between the robot and the
 // rest.
-TEST(RoutePlanner, WhatPassesForGroundIsNoFloorOfItsOwn) {
+TEST(RoutePlanner, IsolatedWrongHeightsMakeNoFloor) {
   RoutePlanner planner(wheeled());
   const auto tell = [&planner](int x, int y, double z) { planner.set_ground(middle(x, y, z)); };
   for (int y = 0; y < 96; y += 16)
@@ -104,7 +104,7 @@ TEST(RoutePlanner, NearlyShortestInRandomWorlds) {
   EXPECT_LT(sum / found, 1.01);
 }
 
-TEST(RoutePlanner, KeepsToTheMiddleOfWhatIsWide) {
+TEST(RoutePlanner, StaysInTheMiddleOfWideSpace) {
   GridWorld world(200, 60);
   world.border();
   world.fill(80, 120, 0, 22);
@@ -267,7 +267,7 @@ TEST(RoutePlanner, TheSamePlaceOnAnotherFloorIsAnotherGoal) {
   EXPECT_GT(route_follower.route().length, 15);
 }
 
-TEST(RoutePlanner, WhatStandsOnTheFloorBelowARampIsNotItsGround) {
+TEST(RoutePlanner, ObstacleBelowARampIsNotOnTheRamp) {
   RoutePlanner planner(wheeled());
   planner.set_ground({1, 1, 0.7});
   planner.set_obstacle({1, 1, 0}, 0.7);  // its side, seen from the floor

@@ -129,7 +129,7 @@ bool passes(const Platform& platform, double noise, const std::function<double(d
   return planner.plan({1, 1.6, height(1)}, {9, 1.6, kNan}).found();
 }
 
-TEST(RouteSteps, WhatIsNearlyTooMuchIsNot) {
+TEST(RouteSteps, PassesSlopesAndStepsUpToTheLimits) {
   Platform tracked = wheeled();
   tracked.step = 0.15;
   tracked.max_slope = 0.5;
@@ -159,7 +159,7 @@ TEST(RouteSteps, TheFootOfAJambIsNoStepThatClosesItsGap) {
   EXPECT_TRUE(planner.plan({1, 1.6, 0}, {9, 1.6, 0}).found());
 }
 
-TEST(RouteSteps, WhoLeansBeforeACrestSeesTheWallBehindIt) {
+TEST(RouteSteps, TiltedRobotSeesTheWallBehindACrest) {
   // Up a ramp of 0.3 whose crest is 0.3 m ahead; a wall stands 3 m away, on what is level.
   RoutePlanner planner(wheeled());
   Pose3 body;
@@ -174,7 +174,7 @@ TEST(RouteSteps, WhoLeansBeforeACrestSeesTheWallBehindIt) {
   EXPECT_TRUE(planner.line({0, 0, 0}, {2.2, 0, 0.09}).passable);
 }
 
-TEST(RouteSteps, WhoStandsOnARampSeesNoWallUpOrDownIt) {
+TEST(RouteSteps, RobotOnARampSeesNoWallUpOrDownIt) {
   for (const double slope : {-0.3, 0.3}) {
     RoutePlanner planner(wheeled());
     Pose3 body;
@@ -190,7 +190,7 @@ TEST(RouteSteps, WhoStandsOnARampSeesNoWallUpOrDownIt) {
   }
 }
 
-TEST(RouteSteps, WhatStandsOnAnotherFloorStandsOnThisToo) {
+TEST(RouteSteps, ObstacleOnAnotherFloorBlocksThisFloorToo) {
   const RouteParams params;
   for (const bool wall : {false, true}) {
     SurfaceMap map(params, ScanProfile::most_wrong(wheeled()));
@@ -208,7 +208,7 @@ TEST(RouteSteps, WhatStandsOnAnotherFloorStandsOnThisToo) {
   }
 }
 
-TEST(RouteSteps, WhatWasSeenFromNearIsNotChangedFromAfar) {
+TEST(RouteSteps, FarReturnsDoNotChangeCellsSeenFromNear) {
   SurfaceMap map(RouteParams{}, 0.5f);
   const auto look = [&](double from, float z) {
     for (int scan = 0; scan < 10; ++scan) {

@@ -41,7 +41,7 @@ TEST(TerrainMap, AFloorIsFree) {
   EXPECT_EQ(robot.map.cells().size(), 0u);
 }
 
-TEST(TerrainMap, AWallIsWhereItIs) {
+TEST(TerrainMap, WallIsAtItsTruePosition) {
   Looker robot;
   robot.world.boxes = {{2.0, 2.2, -1, 1}};
   robot.look(5);
@@ -49,7 +49,7 @@ TEST(TerrainMap, AWallIsWhereItIs) {
   EXPECT_EQ(robot.count(-5, 1.9, -5, 5), 0);
 }
 
-TEST(TerrainMap, OnlyWhatIsHigherThanTheStepCounts) {
+TEST(TerrainMap, OnlyObstaclesHigherThanTheStepCount) {
   for (const double height : {0.05, 0.30}) {
     Looker robot;
     robot.world.boxes = {{1.9, 2.6, -0.5, 0.5, 0.0, height}};
@@ -86,7 +86,7 @@ TEST(TerrainMap, StairsSeenFromAboveAreFreeHoweverNoisy) {
   EXPECT_GT(robot.count(-3.1, -2.7, -1, 1), 10) << "what is too high for its legs stands in the way";
 }
 
-TEST(TerrainMap, WhatIsTooHighForLegsByAHandIsAnObstacle) {
+TEST(TerrainMap, StepSlightlyTooHighForLegsIsAnObstacle) {
   for (const double height : {0.30, 0.35, 0.4})
     for (const double deep : {0.03, 2.0}) {
       Looker robot;
@@ -101,7 +101,7 @@ TEST(TerrainMap, WhatIsTooHighForLegsByAHandIsAnObstacle) {
     }
 }
 
-TEST(TerrainMap, PassesUnderWhatHangsHigh) {
+TEST(TerrainMap, HighOverhangIsNoObstacle) {
   for (const double low : {0.4, 0.9}) {
     Looker robot;
     robot.world.boxes = {{1.5, 1.7, -1, 1, low, 1.4}};
@@ -141,7 +141,7 @@ TEST(TerrainMap, AHoleIsAnObstacle) {
   for (const auto& c : map.cells()) EXPECT_GT(c.x, 1.9f);
 }
 
-TEST(TerrainMap, SomebodyWhoWentLeavesNoGhost) {
+TEST(TerrainMap, PersonWhoLeftLeavesNoObstacle) {
   Looker robot;
   robot.world.boxes = {{6, 6.2, -5, 5}, {2.0, 2.6, -0.3, 0.3, 0.0, 0.5}};
   robot.look(5);
@@ -153,7 +153,7 @@ TEST(TerrainMap, SomebodyWhoWentLeavesNoGhost) {
   EXPECT_EQ(robot.count(1.9, 2.7, -0.4, 0.4), 0);
 }
 
-TEST(TerrainMap, TellsHowLongAnObstacleHasStoodThere) {
+TEST(TerrainMap, MeasuresTheAgeOfAnObstacle) {
   Looker robot;
   robot.world.boxes = {{2.0, 2.2, -0.3, 0.3}, {6, 6.2, -5, 5}};
   robot.look(20);
@@ -168,7 +168,7 @@ TEST(TerrainMap, TellsHowLongAnObstacleHasStoodThere) {
   EXPECT_LT(youngest, 0.25f);
 }
 
-TEST(TerrainMap, WhatTheBlindSpotHidesIsRemembered) {
+TEST(TerrainMap, RemembersObstaclesInTheBlindSpot) {
   Looker robot;
   robot.world.boxes = {{10, 10.2, -5, 5}, {2.0, 2.2, -0.3, 0.3, 0.0, 0.15}};
   robot.look(3);
@@ -178,7 +178,7 @@ TEST(TerrainMap, WhatTheBlindSpotHidesIsRemembered) {
   EXPECT_GT(robot.count(1.9, 2.3, -0.4, 0.4), 3);
 }
 
-TEST(TerrainMap, WhatIsHiddenBySomethingElseIsForgottenInTime) {
+TEST(TerrainMap, ForgetsHiddenObstaclesAfterTheirLifetime) {
   Looker robot;
   robot.world.boxes = {{3.0, 3.2, -0.2, 0.2}};
   robot.look(3);
@@ -218,7 +218,7 @@ TEST(TerrainMap, TakesScansLargerThanAnyLidars) {
   EXPECT_LE(map.cells().size(), map.max_cells());
 }
 
-TEST(TerrainMap, KeepsToItsRangeAndForgetsWhatIsLeftBehind) {
+TEST(TerrainMap, ForgetsPlacesBeyondItsRange) {
   Looker robot;
   robot.world.boxes = {{-30, 30, 2, 2.2}, {-30, 30, -2.2, -2}};
   for (; robot.pose.x < 15; robot.pose.x += 0.25) {

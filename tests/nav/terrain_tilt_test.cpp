@@ -64,7 +64,7 @@ TEST(TerrainTilt, FindsNoDropOnAPlaneHoweverItsBodyLeans) {
 }
 
 // A body that pitches by 2 degrees to and fro, as when it brakes, and an attitude that knows nothing of it.
-TEST(TerrainTilt, RegistersAPitchThatNobodyReported) {
+TEST(TerrainTilt, RegistersAnUnreportedPitch) {
   const Platform platform = wheeled();
   TerrainMap map(platform);
   const HeightWorld world{[](double x, double y) { return std::fabs(y) > 2 ? 0.5 : 0.01 * std::sin(2 * x); }};

@@ -44,7 +44,7 @@ struct Watch {
 
 class TrackerOf : public testing::TestWithParam<int> {};  // rings
 
-TEST_P(TrackerOf, FindsWhoWalksWithinASecondAndHowFast) {
+TEST_P(TrackerOf, FindsAWalkingPersonAndItsSpeedWithinASecond) {
   struct Case {
     Eigen::Vector2d from, walks;
     Twist2 drives;
@@ -69,7 +69,7 @@ TEST_P(TrackerOf, FindsWhoWalksWithinASecondAndHowFast) {
   }
 }
 
-TEST_P(TrackerOf, WhoStopsIsRememberedForAWhile) {
+TEST_P(TrackerOf, RemembersAMoverThatStopped) {
   Watch w;
   w.rings = GetParam();
   w.person = {4, -2};
@@ -106,7 +106,7 @@ TEST(Tracker, AJumpOfTheOdometryIsNoMotion) {
   EXPECT_EQ(w.tracker.movers().size(), 0u);
 }
 
-TEST(Tracker, WhoComesOutFromBehindSomethingIsFoundAndTheWallIsNot) {
+TEST(Tracker, FindsAPersonWhoAppearsFromBehindAWallAndNotTheWall) {
   Watch w;
   w.person = {4, -3};  // behind the screen at x = 3
   w.pass(1.0, {0, 0});
@@ -134,7 +134,7 @@ TEST(Tracker, MoreThanItHasRoomForHarmNothing) {
   EXPECT_EQ(tracker.movers().size(), Tracker::kMax);
 }
 
-TEST(Tracker, GarbageIsNothing) {
+TEST(Tracker, IgnoresGarbage) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   Tracker tracker(wheeled());
   for (int scan = 0; scan < 10; ++scan)

@@ -26,7 +26,7 @@ bool past(const UprightRangeImage& p, float range, float degree, float dz = 0.0f
   return p.saw_past(Ray::to(range * std::cos(a), range * std::sin(a), dz), 0.15f);
 }
 
-TEST(UprightRangeImage, SawPastWhatIsNearerAllAround) {
+TEST(UprightRangeImage, SawPastNearerPlacesInEveryDirection) {
   const auto p = ring(5.0f);
   for (int degree = -180; degree <= 540; degree += 7) {
     EXPECT_TRUE(past(*p, 3.0f, static_cast<float>(degree))) << degree;
@@ -46,7 +46,7 @@ TEST(UprightRangeImage, ARayThatEndedBesideThePlaceCounts) {
   }
 }
 
-TEST(UprightRangeImage, WhereNothingCameBackNothingIsKnown) {
+TEST(UprightRangeImage, DirectionsWithoutAReturnAreUnknown) {
   UprightRangeImage nothing;
   nothing.spread();
   EXPECT_FALSE(past(nothing, 1.0f, 0.0f));

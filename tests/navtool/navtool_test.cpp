@@ -111,7 +111,7 @@ TEST_F(Clouds, ErrorsAreOneLine) {
   EXPECT_NE(broken.out.find("a.pcd:1:"), std::string::npos) << broken.out;
 }
 
-TEST_F(Clouds, TerrainCountsWhatIsKnownWithinRange) {
+TEST_F(Clouds, TerrainCountsKnownCellsWithinRange) {
   write(false, true);
   const Ended one = run("terrain --cloud " + (folder_ / "cloud_0.pcd").string() + " --range 4 --json");
   ASSERT_EQ(one.status, 0) << one.out;

@@ -38,7 +38,7 @@ TEST(FrameTree, ACircleEnds) {
   EXPECT_EQ(tree.find("a", "c").reason(), Reason::frame_unknown);
 }
 
-TEST(FrameTree, RefusesWhatIsNoTransform) {
+TEST(FrameTree, RefusesAnInvalidTransform) {
   FrameTree tree;
   EXPECT_EQ(tree.set("a", "a", {}).error().reason, Reason::malformed);
   EXPECT_EQ(tree.set("", "a", {}).error().reason, Reason::malformed);

@@ -84,7 +84,7 @@ TEST(ScanInput, TheMountingIsTakenFromTheFileOrFromTfStatic) {
   EXPECT_LT(((*known)->points.at(0) - Eigen::Vector3f(-3, 0, 1)).norm(), 1e-5f);
 }
 
-TEST(ScanInput, LeavesOutWhatIsNoReturn) {
+TEST(ScanInput, LeavesOutPointsThatAreNoReturn) {
   ScanInput input(robot());
   const auto scan =
       input.add(of({{kNan, 1, 0}, {0.1f, 0, 0}, {60, 0, 0}, {-0.5f, 0.1f, -0.3f}, {3, 0, 0}, {0, 0, 1.5f}}),
@@ -117,7 +117,7 @@ Sweep of_ground(int n) {
   return of(points);
 }
 
-TEST(ScanInput, WhatMaySeeNothingIsNotRefused) {
+TEST(ScanInput, AcceptsEmptyScansOfPlanarSensors) {
   Platform p = robot();
   p.lidars[0].rings = 1;
   ScanInput level(p), tilted(p), laser(p);

@@ -63,7 +63,7 @@ TEST(OctreeDiff, AgreesWithLiboctomapCellByCell) {
   EXPECT_GT(expected.equal, 100u);
 }
 
-TEST(OctreeDiff, WhatIsNoMapIsAnError) {
+TEST(OctreeDiff, RefusesAFileThatIsNoMap) {
   const Scratch scratch;
   scratch.write("cut.ot", "# Octomap OcTree file\nid OcTree\nsize 5\nres 0.1\ndata\nabc");
   scratch.write("other.ot", "hello");

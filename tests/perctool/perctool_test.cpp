@@ -35,7 +35,7 @@ nlohmann::json last_line(const std::string& out) {
   return nlohmann::json::parse(out.substr(begin == std::string::npos ? 0 : begin + 1));
 }
 
-TEST(Perctool, EvalPrintsWhatEvoPrints) {
+TEST(Perctool, EvalPrintsTheSameAsEvo) {
   const Scratch scratch;
   scratch.write("truth.tum", "0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.2 2 1 0 0 0 0 1\n0.3 3 1 0 0 0 0 1\n");
   scratch.write("estimate.tum",

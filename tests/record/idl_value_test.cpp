@@ -66,7 +66,7 @@ TEST(IdlValue, LongSequencesAreShortened) {
   EXPECT_LT(json->size(), 500U);
 }
 
-TEST(IdlValue, WhatIsCutOffIsRefusedAtEveryByte) {
+TEST(IdlValue, RefusesAValueThatIsCutAtAnyByte) {
   const auto schema = idl_schema("nav_msgs::msg::dds_::Odometry_").value();
   const IdlTypes types = parse_idl(schema.text).value();
   std::vector<std::uint8_t> cdr;
@@ -86,7 +86,7 @@ TEST(IdlValue, BigEndianIsUnderstood) {
   EXPECT_EQ(cdr_to_json(*types.at("S"), cdr).value(), R"({"a":7,"b":-2,"c":256})");
 }
 
-TEST(IdlValue, WhatIsNoIdlOfOursIsTold) {
+TEST(IdlValue, RefusesInvalidIdl) {
   for (const char* text :
        {"union U {};", "struct S { nothing x; };", "module m {", "struct S { long a[x]; };",
         "struct S { sequence<long b; };", "struct", "enum E { A B };"}) {

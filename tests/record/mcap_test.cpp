@@ -35,7 +35,7 @@ TEST_P(Packed, ReadsWhatWasWritten) {
   EXPECT_EQ(heard->channels[0].metadata.at("from"), "r1");
 }
 
-TEST_P(Packed, TornAnywhereGivesAllWholeChunksBeforeTheTear) {
+TEST_P(Packed, ReadsAllCompleteChunksBeforeATear) {
   const std::vector<std::uint8_t> file = small_file(GetParam());
   const std::vector<std::string> all = hear(file)->messages;
   std::size_t before = 0;

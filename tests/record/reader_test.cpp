@@ -90,7 +90,7 @@ TEST_F(Reader, ALiveRunDecodes) {
     EXPECT_TRUE(station["topics"].contains(topic)) << topic << " is not in " << station["topics"].dump();
 }
 
-TEST_F(Reader, WhatAKilledAgentLeftDecodes) {
+TEST_F(Reader, DecodesTheRecordingOfAKilledAgent) {
   if (!ready()) GTEST_SKIP() << "the reader cannot be had here: " << why_not_;
   const fs::path file = folder_.path() + "/adit/recordings/r1-000001.mcap";
   {

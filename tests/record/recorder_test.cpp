@@ -47,7 +47,7 @@ class RecorderTest : public testing::Test {
   std::vector<std::string> complaints_{};  // by the writing thread, read once it has ended
 };
 
-TEST_F(RecorderTest, KeepsWhatItWasGivenWithItsType) {
+TEST_F(RecorderTest, StoresMessagesWithTheirTypes) {
   {
     Recorder recorder(params());
     const auto id = recorder.channel({"out/adit/presence", "adit::radio::Presence", {{"net", "radio"}}});
@@ -114,7 +114,7 @@ TEST_F(RecorderTest, FilesOfOthersAreLeftAlone) {
   EXPECT_LT(files().size(), 4U + 16U);
 }
 
-TEST_F(RecorderTest, WhatWaitsForAReleasedChannelIsWritten) {
+TEST_F(RecorderTest, WritesQueuedMessagesOfAReleasedChannel) {
   {
     Recorder recorder(params());
     for (int i = 0; i < 5000; ++i) {
@@ -140,7 +140,7 @@ TEST_F(RecorderTest, LargeOnesAreThinned) {
   EXPECT_EQ(recorder.counters().thinned, 98U);
 }
 
-TEST_F(RecorderTest, WhatDoesNotFitTheQueueIsCounted) {
+TEST_F(RecorderTest, CountsMessagesBeyondTheQueue) {
   RecorderParams own = params();
   own.queue_bytes = 1000;
   own.flush = 1h;
@@ -173,7 +173,7 @@ struct SmallDisk {
   }
 };
 
-TEST_F(RecorderTest, AFullDiskIsToldOnceAndGoesOnWhenThereIsRoom) {
+TEST_F(RecorderTest, ReportsAFullDiskOnceAndContinuesWhenThereIsRoom) {
   SmallDisk disk;
   disk.room = 3000;
   RecorderParams own = params();

@@ -27,7 +27,7 @@ class Tool : public testing::Test {
   live::Folder folder_{};
 };
 
-TEST_F(Tool, InfoAndCatTellWhatIsThere) {
+TEST_F(Tool, InfoAndCatPrintTheContents) {
   const std::string path = file("a.mcap", small_file(true));
   const auto info = recording({"info", path});
   EXPECT_EQ(info.exit_code, 0) << info.err;
@@ -39,10 +39,10 @@ TEST_F(Tool, InfoAndCatTellWhatIsThere) {
   EXPECT_EQ(cat.out, "0.000000 /b 5 bytes\n");
 }
 
-TEST_F(Tool, RecoversWhatATornFileHolds) {
-  const auto whole = small_file(false);
-  const std::string bytes(whole.begin(), whole.end());
-  const std::string torn = file("torn.mcap", ByteSpan(whole).first(bytes.find("third")));
+TEST_F(Tool, RecoversTheMessagesOfATornFile) {
+  const auto complete = small_file(false);
+  const std::string bytes(complete.begin(), complete.end());
+  const std::string torn = file("torn.mcap", ByteSpan(complete).first(bytes.find("third")));
   EXPECT_EQ(recording({"info", torn}).exit_code, 1);
   const std::string saved = folder_.path() + "/saved.mcap";
   const auto done = recording({"recover", torn, saved});
@@ -63,7 +63,7 @@ TEST_F(Tool, SeveralBecomeOne) {
   EXPECT_EQ(heard.channels.size(), 2U) << "the same channels are not doubled";
 }
 
-TEST_F(Tool, WrongUseIsTold) {
+TEST_F(Tool, ReportsWrongUsage) {
   const std::string text = file("notes.txt", bytes_of("no recording"));
   for (const std::vector<std::string>& words : {std::vector<std::string>{},
                                                 {"info"},

@@ -106,7 +106,7 @@ TEST_F(Air, BothDirectionsAreRecorded) {
   EXPECT_EQ(sink_.channels.at(1).metadata.at("net"), "radio");
 }
 
-TEST_F(Air, WhatCannotBeDecodedStandsApart) {
+TEST_F(Air, ListsUndecodableFramesApart) {
   RecordingParticipant r1(*r1_, sink_, "radio");
   const auto own = strand("r1");
   const auto reader = wire::make_reader(r1, wire::topics::kPresence, *own,
@@ -173,7 +173,7 @@ TEST_F(Air, EachSenderHasItsChannel) {
   EXPECT_EQ(sink_.released, 2) << "32 are kept; of more, those that were silent longest are given up";
 }
 
-TEST_F(Air, ARehearsalIsOneFileWithWhoToWhom) {
+TEST_F(Air, RehearsalIsOneFileWithSendersAndReceivers) {
   const live::Folder folder;
   const std::string file = folder.path() + "/run.mcap";
   auto recorder = FrameRecorder::open({.file = file, .about = {{"seed", "1"}}});

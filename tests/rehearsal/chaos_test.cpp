@@ -51,7 +51,7 @@ TEST(Chaos, SeedsBreakNoRule) {
   }
 }
 
-TEST(Chaos, WhatASeedDrawsCanBeWrittenOutAndIsTheSameRun) {
+TEST(Chaos, RandomFaultsWrittenToAFileGiveTheSameRun) {
   const Scenario scenario = short_team();
   const Scenario written = written_out(scenario, 5);
   EXPECT_FALSE(written.random);

@@ -44,7 +44,7 @@ TEST(CheckerAuthority, CommandOfAnOldEpoch) {
   EXPECT_THAT(r.broken(), ElementsAre(1)) << r.texts();
 }
 
-TEST(CheckerAuthority, CommandOfWhoDoesNotHold) {
+TEST(CheckerAuthority, CommandOfAStationThatIsNotTheHolder) {
   Record r;
   r.take(1);
   r.enter("waypoint");
@@ -93,7 +93,7 @@ TEST(CheckerAuthority, TakeOfARestartedStationShowsItsParticipant) {
   EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
 }
 
-TEST(CheckerAuthority, StreamsOfTwoParticipantsUnderOneIdAreToldEach) {
+TEST(CheckerAuthority, StreamsOfTwoParticipantsUnderOneIdAreAnsweredEach) {
   Record r;
   r.take(2);
   for (int from : {1, 11}) {
@@ -139,7 +139,7 @@ TEST(CheckerAuthority, LockedRobotTaken) {
   EXPECT_THAT(r.broken(), ElementsAre(2)) << r.texts();
 }
 
-TEST(CheckerAuthority, FormerHolderNotTold) {
+TEST(CheckerAuthority, FormerHolderNotNotified) {
   Record r;
   r.take(1);
   const CommandHeard c = r.ask(2, Verb::take);
@@ -240,7 +240,7 @@ TEST(CheckerAuthority, ANamesakeThatObeysTheSameCommand) {
   EXPECT_THAT(r.broken(), ElementsAre(1)) << r.texts();
 }
 
-TEST(CheckerAuthority, ARestartOrAPolicyOfWhoDoesNotHoldIt) {
+TEST(CheckerAuthority, RestartOrPolicyOfAStationThatIsNotTheHolder) {
   for (const Verb verb : {Verb::restart, Verb::policy}) {
     Record r;
     r.pass(1s);

@@ -90,7 +90,7 @@ TEST(CheckerRestart, TheFirstVelocityAfterARestartIsZero) {
 }
 
 /// State that a restart must not lose, and the rule that reports each loss.
-TEST(CheckerRestart, WhatARestartMustKeep) {
+TEST(CheckerRestart, StateLostInARestart) {
   const auto after = [](const std::function<void(Record&)>& change) {
     Record r;
     r.take(1);
@@ -123,7 +123,7 @@ TEST(CheckerRestart, WhatARestartMustKeep) {
   EXPECT_THAT(after([](Record& r) { --r.epoch; }), ElementsAre(9)) << "the epoch's counter";
 }
 
-TEST(CheckerRestart, WhatWasNotAnsweredMayBeDoneOrNot) {
+TEST(CheckerRestart, UnansweredCommandMayBeDoneOrNot) {
   for (const bool done : {false, true}) {
     Record r;
     r.take(1);

@@ -111,8 +111,8 @@ TEST(CheckerStop, MotionAfterReset) {
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
 }
 
-TEST(CheckerStop, BothAreToldOfAnOverride) {
-  for (const bool told : {true, false}) {
+TEST(CheckerStop, OverrideNotifiesBothOperators) {
+  for (const bool notified : {true, false}) {
     Record r;
     r.take(1);
     const CommandHeard stop = r.ask(2, Verb::stop);
@@ -123,11 +123,11 @@ TEST(CheckerStop, BothAreToldOfAnOverride) {
     const CommandHeard reset = r.ask(1, Verb::reset, "", true);
     r.stops.clear();
     r.see(NotificationSent{"reset", "op1", 1});
-    if (told) r.see(NotificationSent{"reset", "op2", 2});
+    if (notified) r.see(NotificationSent{"reset", "op2", 2});
     r.answer(reset);
     r.publish();
     r.pass(400ms);
-    if (told)
+    if (notified)
       EXPECT_THAT(r.broken(), ElementsAre()) << r.texts();
     else
       EXPECT_THAT(r.broken(), ElementsAre(4)) << r.texts();

@@ -119,7 +119,7 @@ expect:
                  "cut.yaml"));
 }
 
-TEST(Convoy, AFollowerThatHearsNobodySaysSoAndComesLater) {
+TEST(Convoy, FollowerWithoutContactReportsItAndComesLater) {
   holds(run_text(in_a_row(R"(duration: 50
 script:
   - {at: 1, by: op1, do: take r1 r2}

@@ -9,17 +9,19 @@
 namespace adit::sim {
 namespace {
 
-bool holds(const Indices& kept, std::size_t i) { return std::binary_search(kept.begin(), kept.end(), i); }
+bool holds(const Indices& remaining, std::size_t i) {
+  return std::binary_search(remaining.begin(), remaining.end(), i);
+}
 
 TEST(Ddmin, FindsTheOneThatMatters) {
   for (std::size_t guilty = 0; guilty < 20; ++guilty)
-    EXPECT_EQ(ddmin(20, [&](const Indices& kept) { return holds(kept, guilty); }), Indices{guilty});
+    EXPECT_EQ(ddmin(20, [&](const Indices& remaining) { return holds(remaining, guilty); }), Indices{guilty});
 }
 
 TEST(Ddmin, FindsSeveralFarApart) {
   const Indices guilty{1, 7, 18};
-  const auto fails = [&](const Indices& kept) {
-    return std::all_of(guilty.begin(), guilty.end(), [&](std::size_t g) { return holds(kept, g); });
+  const auto fails = [&](const Indices& remaining) {
+    return std::all_of(guilty.begin(), guilty.end(), [&](std::size_t g) { return holds(remaining, g); });
   };
   EXPECT_EQ(ddmin(20, fails), guilty);
 }
@@ -32,22 +34,22 @@ TEST(Ddmin, NothingIsLeftWhenNothingIsNeeded) {
 }
 
 TEST(Ddmin, AllAreLeftWhenAllAreNeeded) {
-  EXPECT_EQ(ddmin(5, [](const Indices& kept) { return kept.size() == 5; }).size(), 5U);
+  EXPECT_EQ(ddmin(5, [](const Indices& remaining) { return remaining.size() == 5; }).size(), 5U);
 }
 
 TEST(Ddmin, NeverAsksTwice) {
   std::set<Indices> asked;
-  ddmin(30, [&](const Indices& kept) {
-    EXPECT_TRUE(asked.insert(kept).second);
-    return holds(kept, 3) && (holds(kept, 20) || holds(kept, 21));
+  ddmin(30, [&](const Indices& remaining) {
+    EXPECT_TRUE(asked.insert(remaining).second);
+    return holds(remaining, 3) && (holds(remaining, 20) || holds(remaining, 21));
   });
   EXPECT_LT(asked.size(), 100U);
 }
 
 TEST(Fewer, FindsTheSmallestChoiceThatDdminMisses) {
   // 1-minimal: {0, 1, 2}; and 9 alone fails, too.
-  const auto fails = [](const Indices& kept) {
-    return holds(kept, 9) || (holds(kept, 0) && holds(kept, 1) && holds(kept, 2));
+  const auto fails = [](const Indices& remaining) {
+    return holds(remaining, 9) || (holds(remaining, 0) && holds(remaining, 1) && holds(remaining, 2));
   };
   EXPECT_EQ(fewer(10, 3, 2, 100, fails), std::vector<Indices>{{9}});
   EXPECT_TRUE(fewer(10, 3, 2, 5, fails).empty()) << "no more than so many questions";

@@ -31,7 +31,7 @@ CommandHeard heard(radio::CommandKind kind) {
   return std::get<CommandHeard>(decoded->event);
 }
 
-TEST(RadioDecoder, CommandsAreDecodedAsWhatTheyAre) {
+TEST(RadioDecoder, DecodesCommandsByTheirVerb) {
   const std::vector<std::pair<radio::CommandKind, Verb>> kinds{
       {radio::CMD_TAKE, Verb::take},         {radio::CMD_RELEASE, Verb::release},
       {radio::CMD_LOCK, Verb::lock},         {radio::CMD_UNLOCK, Verb::unlock},

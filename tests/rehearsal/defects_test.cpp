@@ -154,7 +154,7 @@ TEST(Defects, AForgottenReturnLeavesTheChargeAsItIs) {
   EXPECT_FALSE(robot.decoration.wires);
 }
 
-TEST(Defects, AStateThatIsLostWholeIsNoShorterThanItWas) {
+TEST(Defects, CompletelyLostStateHasItsFormerLength) {
   const Decorated robot("state_lost_whole");
   agent::Snapshot snapshot{};
   snapshot.boot = 7;

@@ -42,7 +42,7 @@ TEST(Expectations, AtIsJudgedAtThatInstantOnly) {
   EXPECT_TRUE(c.finish().ok);
 }
 
-TEST(Expectations, WhatIsWrongIsTold) {
+TEST(Expectations, ReportsEveryDifference) {
   Case c({When::at, 10s, StateExpectation{"r1", "waypoint", "", true, true}, 1, ""});
   c.word = {"hold", {1, 1, "op2", {}, false}, false, true};
   c.expectations->judge(10s, c.evidence);
@@ -59,7 +59,7 @@ TEST(Expectations, AStationHasSoManyFindings) {
   EXPECT_TRUE(c.finish().ok);
 }
 
-TEST(Expectations, AStationThatIsDeadOrHasOthersIsTold) {
+TEST(Expectations, ReportsAStationThatIsDeadOrListsOthers) {
   Case c({When::at, 10s, FindingsExpectation{"op1", 2}, 1, ""});
   c.expectations->judge(10s, c.evidence);
   EXPECT_EQ(c.finish().found, "the station does not run");
@@ -157,7 +157,7 @@ TEST(Expectations, ExploredAndDrivenAgainAreThoseOfTheTruth) {
   EXPECT_TRUE(again.finish().ok);
 }
 
-TEST(Expectations, AMapIsJudgedByItsShareAndByWhatIsWrong) {
+TEST(Expectations, JudgesAMapByItsShareAndItsErrors) {
   Case both({When::by, 10s, MapExpectation{"op1", 0.9, 0.03}, 1, ""});
   both.expectations->judge(5s, both.evidence);
   EXPECT_EQ(both.finish().found, "op1 has no map");
@@ -235,7 +235,7 @@ TEST(Expectations, RunThatEndsBeforeIsAFailure) {
 }
 
 // The outline of r1 is 0.6 x 0.5 m.
-TEST(Expectations, AlwaysInsideIsTheWholeOutline) {
+TEST(Expectations, AlwaysInsideAppliesToTheCompleteOutline) {
   Case c({When::always, 0s, PlaceExpectation{true, {0, 0, 4, 4}, {"r1"}}, 1, ""});
   c.pose = {3.6, 2, 0};
   c.expectations->judge(1s, c.evidence);
@@ -249,7 +249,7 @@ TEST(Expectations, AlwaysInsideIsTheWholeOutline) {
   EXPECT_EQ(result.found, "r1 at 3.71 2.00 at 2 s");
 }
 
-TEST(Expectations, AlwaysOutsideIsTheWholeOutline) {
+TEST(Expectations, AlwaysOutsideAppliesToTheCompleteOutline) {
   for (const auto& [pose, ok] : {std::pair{Pose2{4.31, 2, 0}, true},
                                  {Pose2{4.29, 2, 0}, false},
                                  {Pose2{2, 2, 0}, false},

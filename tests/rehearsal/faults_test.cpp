@@ -38,7 +38,7 @@ TEST(Faults, OverlappingCutsEndOnlyThemselves) {
               "  - {at: 12, robot: r1, mode: waypoint}\n");
 }
 
-TEST(Faults, WhatWasGivenUpInACutIsNotObeyedAfterIt) {
+TEST(Faults, CommandGivenUpDuringACutIsNotObeyedAfterIt) {
   expect_both(
       "  - {at: 7, by: op1, do: mode r1 hold}\n", "  - {at: 6, cut: [op1, r1], for: 6}\n",
       "  - {at: 11, by_operator: op1, refused: no_answer}\n  - {at: 18, robot: r1, mode: waypoint}\n");
@@ -57,7 +57,7 @@ TEST(Faults, APartitionCutsBetweenItsGroupsOnly) {
               "  - {at: 8, robot: r2, stopped: true}\n  - {at: 8, robot: r1, stopped: false}\n");
 }
 
-TEST(Faults, AStuckDriveStandsWhateverItIsTold) {
+TEST(Faults, StuckDriveIgnoresEveryVelocity) {
   expect_both("", "  - {at: 4, stuck: r1, for: 12}\n  - {at: 5, stuck: r1, for: 1}\n",
               "  - {at: 15.5, robot: r1, near: [0, 0, 2.0]}\n  - {at: 15.5, robot: r1, mode: waypoint}\n");
 }
@@ -72,14 +72,14 @@ TEST(Faults, WithoutLidarARobotDoesNotGoOn) {
               "  - {at: 15.5, robot: r1, near: [1, 0, 2]}\n");
 }
 
-TEST(Faults, AClockThatJumpsMakesWhatWasHeardOld) {
+TEST(Faults, ClockJumpEndsTheLeaseOfALock) {
   // The lock's lease runs out by the robot's clock.
   expect_both("  - {at: 4, by: op1, do: lock r1}\n",
               "  - {at: 6, cut: [op1, r1], for: 4}\n  - {at: 7, clock_jump: {r1: 400}}\n",
               "  - {at: 9, robot: r1, locked: false, holder: op1}\n");
 }
 
-TEST(Faults, WhatHappenedIsCounted) {
+TEST(Faults, CountsFaults) {
   const RunReport report =
       run("faults:\n  - {at: 4, reorder: [op1, r1], chance: 0.5, for: 5}\n  - {at: 5, duplicate: [op1, r1], "
           "chance: 0.5, for: 5}\n"

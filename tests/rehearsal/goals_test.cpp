@@ -13,7 +13,7 @@ struct GoalsRun {
   std::vector<Pose2> trail{};         ///< True poses of r1, every 0.1 s.
 
   /// When an operator was first notified of it; nothing: never.
-  std::optional<Duration> told(const std::string& robot, const std::string& code) const {
+  std::optional<Duration> notified(const std::string& robot, const std::string& code) const {
     const auto it = std::find_if(notices.begin(), notices.end(), [&](const TimedEvent& notice) {
       return notice.robot == robot && notice.text == code;
     });
@@ -112,14 +112,14 @@ TEST(Goals, AnUnseenGoalHasABudgetAndIsJudgedOnceItIsSeen) {
       "  - {at: 22, by: op1, do: goto r1 6.1 -4 --budget none}\n"
       "expect:\n  - {at: 3.5, by_operator: op1, refused: none}\n  - {at: 39, robot: r1, mode: waypoint}\n"
       "  - {always: no_collision}\n"));
-  EXPECT_TRUE(run.told("r1", "goal_unseen"));
-  const auto used_up = run.told("r1", "unknown_budget");
+  EXPECT_TRUE(run.notified("r1", "goal_unseen"));
+  const auto used_up = run.notified("r1", "unknown_budget");
   ASSERT_TRUE(used_up);
   EXPECT_LT(*used_up, 12s);
   EXPECT_NEAR(run.driven(0s, 12s), 1.8, 0.3);
   EXPECT_EQ(run.driven(10s, 12s), 0.0);
   EXPECT_GT(run.driven(12s, 20s), 1.0) << "mode waypoint renews the budget";
-  ASSERT_TRUE(run.told("r1", "unreachable")) << "a block stands at the goal";
+  ASSERT_TRUE(run.notified("r1", "unreachable")) << "a block stands at the goal";
   EXPECT_EQ(run.driven(36s, 40s), 0.0);
 }
 
@@ -131,8 +131,8 @@ TEST(Goals, TheNearestPlaceReplacesAGoalAndARobotThatCannotMoveIsStuck) {
       "  - {at: 3, by: op1, do: goto r1 4.1 0.2 --nearest}\n  - {at: 15, by: op1, do: goto r1 0 0}\n"
       "faults:\n  - {at: 15, stuck: r1, for: 60}\n"
       "expect:\n  - {by: 14, robot: r1, near: [3.65, 0.2, 0.35]}\n  - {always: no_collision}\n");
-  EXPECT_TRUE(run.told("r1", "goal_moved"));
-  const auto stuck = run.told("r1", "stuck");
+  EXPECT_TRUE(run.notified("r1", "goal_moved"));
+  const auto stuck = run.notified("r1", "stuck");
   ASSERT_TRUE(stuck);
   EXPECT_NEAR(seconds(*stuck), 60, 2);
 }
@@ -158,8 +158,8 @@ TEST(Goals, ARobotThatStartsNearlyInContactLeavesOrNamesIt) {
       "  - {by: 25, robot: r1, near: [-3, 1, 0.5]}\n"
       "  - {by: 25, robot: r3, near: [-3, 19, 0.5]}\n  - {always: no_collision}\n",
       true);
-  EXPECT_TRUE(run.told("r2", "start_in_collision"));
-  EXPECT_TRUE(run.told("r4", "start_in_collision"));
+  EXPECT_TRUE(run.notified("r2", "start_in_collision"));
+  EXPECT_TRUE(run.notified("r4", "start_in_collision"));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(People, SixteenRingsShowThemAsWell) {
   expect_ok(run_seed(scenario, 1));
 }
 
-TEST(People, WhoYieldToNobodyAreTheOnesWhoRunIntoTheRobot) {
+TEST(People, PeopleWhoDoNotYieldCauseTheirContacts) {
   Scenario scenario = load_shipped("people.yaml");
   // One walks up and down the way of r1, which stands at the end of its way.
   scenario.people = {{{{20, 2}, {-1, 2}}, 1.5, false}};
@@ -51,9 +51,9 @@ TEST(People, WhoYieldToNobodyAreTheOnesWhoRunIntoTheRobot) {
   const RunReport report = run_seed(scenario, 1);
   EXPECT_GT(report.robots.at("r1").collisions, 0);
   EXPECT_EQ(report.robots.at("r1").caused, 0);
-  bool told = false;
-  for (const TimedEvent& event : report.events) told = told || event.text == "is touched by a person";
-  EXPECT_TRUE(told);
+  bool reported = false;
+  for (const TimedEvent& event : report.events) reported = reported || event.text == "is touched by a person";
+  EXPECT_TRUE(reported);
 }
 
 TEST(HeadOn, InACorridorOfTwoMetresTwentyTheyPass) {

@@ -17,7 +17,7 @@ TEST(RadioWalls, TakeSoMuchAMetreBothWaysAndNotMoreThanMatters) {
   EXPECT_EQ(walls({0, 0, 0}, {95, 0, 0}), RadioWalls::kMaxAttenuation);
 }
 
-TEST(RadioWalls, WhatIsRememberedIsForgottenBeforeItGrowsWithoutEnd) {
+TEST(RadioWalls, StaysCorrectWhenItsCacheIsCleared) {
   const World world = *make_box_world(std::vector<Box>{{4, 6, -5, 5, 0, 3}}, 0.0, 3.0);
   RadioWalls walls(world, 10.0);
   for (int i = 0; i < 5000; ++i) (void)walls({0, 0, 0}, {8.0 + 0.3 * (i % 70), 0.3 * (i / 70), 0});

@@ -36,7 +36,7 @@ RunOutcome run(const Scenario& scenario, std::uint64_t seed, int workers = 2,
   return std::move(*outcome);
 }
 
-TEST(Rehearse, SameSeedSameDigestWhateverTheWorkersAndAnotherSeedAnotherDigest) {
+TEST(Rehearse, SameSeedGivesSameDigestWithAnyNumberOfWorkers) {
   const Scenario scenario = load_shipped("handover.yaml");
   const std::string digest = run(scenario, 3).report.digest;
   EXPECT_EQ(run(scenario, 3).report.digest, digest);
@@ -62,14 +62,14 @@ class RehearsalThreads : public testing::TestWithParam<Shortened> {};
 
 TEST_P(RehearsalThreads, OneTwoAndFourGiveTheSameDigest) {
   Scenario scenario = load_shipped(GetParam().file);
-  const bool whole = std::getenv("ADIT_WHOLE_SCENARIOS") != nullptr;
-  if (!whole) {
+  const bool complete = std::getenv("ADIT_WHOLE_SCENARIOS") != nullptr;
+  if (!complete) {
     scenario.duration = GetParam().duration;
     scenario.expectations.clear();  // a run lasts until the last of them
   }
   const auto world = make_world(scenario.world).value();
   const std::string digest = run(scenario, scenario.seed, 1, world).report.digest;
-  for (const int threads : whole ? std::vector{2, 4, 1, 2, 4} : std::vector{2, 4})
+  for (const int threads : complete ? std::vector{2, 4, 1, 2, 4} : std::vector{2, 4})
     EXPECT_EQ(run(scenario, scenario.seed, threads, world).report.digest, digest) << threads << " threads";
   std::printf("%s: %s\n", GetParam().file, digest.c_str());
 }

@@ -31,16 +31,16 @@ TEST(Route, AHungRouterIsMadeAnewOnTheWayAndLeadsOutAllTheSame) {
                 "expect:\n  - {by: 65, robot: r1, near: [8, 0, 0.5]}\n  - {always: no_collision}\n"));
 }
 
-TEST(Route, AClosedRoomIsUnreachableAndToldWithinTenSeconds) {
+TEST(Route, ClosedRoomIsReportedUnreachableWithinTenSeconds) {
   const RunReport report = run(
       "[-9, 13, -8, -7.7, 0, 2], [-9, 13, 7.7, 8, 0, 2], [-9, -8.7, -8, 8, 0, 2], [12.7, 13, -8, 8, 0, 2]",
       20, "  - {at: 3, by: op1, do: goto r1 20 0}\n",
       "expect:\n  - {at: 13, robot: r1, mode: waypoint}\n  - {always: no_collision}\n");
   expect_ok(report);
-  bool told = false;
+  bool reported = false;
   for (const TimedEvent& event : report.events)
-    told = told || (event.text == "no way to its goal" && event.at < 13s);
-  EXPECT_TRUE(told);
+    reported = reported || (event.text == "no way to its goal" && event.at < 13s);
+  EXPECT_TRUE(reported);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ std::string with(const std::string& what, const std::string& instead) {
   return text.replace(at, what.size(), instead);
 }
 
-TEST(Scenario, ReadsWhatRobotsFindAndDoByThemselves) {
+TEST(Scenario, ReadsFindingsAndSafeguardsOfRobots) {
   std::string text = with("crash: r1", "finds: \"a rope\", robot: r2, importance: 7");
   const std::string robot = "pose: [4, 0, 1.5]";
   text.replace(text.find(robot), robot.size(), robot + ", on_link_loss: return, link_loss_after: 4");
@@ -90,7 +90,7 @@ TEST(Scenario, PlaceAndStateInOneExpectation) {
   EXPECT_DOUBLE_EQ(state.near->x, 12.0);
 }
 
-TEST(Scenario, PeopleYieldUnlessToldOtherwise) {
+TEST(Scenario, PeopleYieldByDefault) {
   const auto s = parse_scenario(
       with("expect:",
            "people:\n  - {path: [[0, 1], [2, 1]]}\n  - {path: [[0, 1], [2, 1]], speed: 1.2, yields: "
@@ -104,7 +104,7 @@ TEST(Scenario, PeopleYieldUnlessToldOtherwise) {
   EXPECT_EQ(s->people[1].speed, 1.2);
 }
 
-TEST(Scenario, WhatIsAlwaysExpectedOfCollisionsIsAllOrThoseCaused) {
+TEST(Scenario, AlwaysNoCollisionIsForAllOrForCausedContacts) {
   const auto all = parse_scenario(kGood, "b.yaml");
   const auto caused = parse_scenario(with("no_collision", "no_collision_caused"), "b.yaml");
   ASSERT_TRUE(all.ok() && caused.ok());
@@ -129,7 +129,7 @@ TEST(Scenario, YesAndNoAreTrueAndFalse) {
   EXPECT_EQ(state.stopped, false);
 }
 
-TEST(Scenario, NobodyMayBeWrittenInManyWays) {
+TEST(Scenario, NoHolderMayBeWrittenInSeveralWays) {
   for (const char* nobody : {"nobody", "none", "\"\"", "null", "~"}) {
     const auto s = parse_scenario(with("holder: op1", std::string("holder: ") + nobody), "b.yaml");
     ASSERT_TRUE(s.ok()) << s.error().text;
@@ -182,18 +182,18 @@ struct Bad {
   const char* what;
   const char* instead;
   int line;
-  const char* told;  ///< A part of the message.
+  const char* message;  ///< A part of the message.
 };
 
 class BadScenario : public testing::TestWithParam<Bad> {};
 
-TEST_P(BadScenario, NamesFileLineAndWhatWasExpected) {
+TEST_P(BadScenario, NamesFileLineAndExpectedValue) {
   const Bad& bad = GetParam();
   const auto s = parse_scenario(with(bad.what, bad.instead), "bad.yaml");
   ASSERT_FALSE(s.ok());
   const std::string& text = s.error().text;
   EXPECT_EQ(text.find("bad.yaml:" + std::to_string(bad.line)), 0U) << text;
-  EXPECT_NE(text.find(bad.told), std::string::npos) << text;
+  EXPECT_NE(text.find(bad.message), std::string::npos) << text;
   EXPECT_EQ(text.find('\n'), std::string::npos) << text;
 }
 

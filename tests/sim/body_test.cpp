@@ -145,7 +145,7 @@ Pose2 error_after(double way, std::uint64_t seed, const OdometryParams& params) 
   return {odometry.pose().x - way, odometry.pose().y, odometry.pose().yaw};
 }
 
-TEST(Odometry, errs_as_much_as_it_is_told) {
+TEST(Odometry, errs_by_the_given_amount) {
   double along = 0, heading_1 = 0, heading_20 = 0;
   constexpr int runs = 400;
   for (int n = 0; n < runs; ++n) {

@@ -41,7 +41,7 @@ TEST(BoxWorld, ground_is_the_lowest_floor_with_headroom) {
   EXPECT_FALSE(world->ground_height(std::nan(""), 0, 0.5));
 }
 
-TEST(BoxWorld, refuses_what_is_turned_inside_out) {
+TEST(BoxWorld, refuses_boxes_turned_inside_out) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   const std::array<Box, 2> second_bad{Box{0, 1, 0, 1, 0, 1}, Box{1, 0, 0, 1, 0, 1}};
   const auto turned = make_box_world(second_bad, 0, 3);

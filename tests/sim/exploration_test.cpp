@@ -47,7 +47,7 @@ TEST(ExplorationTruth, ARoomThatNobodyCanEnterDoesNotCount) {
   EXPECT_EQ(truth.share(ExplorationArea{10.5, 0, 20, 6}, {}), 1.0) << "nothing can be seen there";
 }
 
-TEST(ExplorationTruth, SeesWhatRaysPassWithinTwelveMetres) {
+TEST(ExplorationTruth, SeesVoxelsThatRaysPassWithinTwelveMetres) {
   const auto corridor = world_of(std::vector<Box>{{-0.3, 40.3, -0.3, 0, 0, 3},
                                                   {-0.3, 40.3, 3, 3.3, 0, 3},
                                                   {-0.3, 0, 0, 3, 0, 3},
@@ -79,11 +79,11 @@ TEST(ExplorationTruth, ALeaningLidarSeesOtherCells) {
   EXPECT_GT(leaning.seen(), level.seen());
 }
 
-TEST(ExplorationTruth, RefusesWhatItCannotJudge) {
+TEST(ExplorationTruth, RefusesAWorldWithoutAStart) {
   EXPECT_EQ(ExplorationTruth::create(two_rooms(), {}).reason(), Reason::bad_argument);
 }
 
-TEST(ExplorationRecord, TellsWhenWhichShareWasReached) {
+TEST(ExplorationRecord, RecordsWhenEachShareWasReached) {
   ExplorationRecord record(truth_of(two_rooms(), {{1, 3, 0}}), 1);
   for (int n = 0; n <= 40; ++n) {
     const Pose3 pose = Pose3::level({1 + 0.2 * n, 3, 0}, 0);
@@ -97,7 +97,7 @@ TEST(ExplorationRecord, TellsWhenWhichShareWasReached) {
   EXPECT_EQ(result.curve.size(), 9u) << "once a second";
 }
 
-TEST(RepeatedWay, IsWhatWasDrivenAgainLater) {
+TEST(RepeatedWay, CountsMetresDrivenAgainLater) {
   RepeatedWay way(2);
   double time = 0;
   const auto drive = [&](std::size_t robot, double from, double to) {

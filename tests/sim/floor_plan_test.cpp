@@ -48,7 +48,7 @@ TEST(FloorPlan, negate_swaps_black_and_white) {
   EXPECT_TRUE(solid(*world, -0.25, 3.25));
 }
 
-TEST(FloorPlan, says_what_is_wrong_and_where) {
+TEST(FloorPlan, names_the_error_and_its_place) {
   const Scratch scratch;
   scratch.write("plan.pgm", kPlain);
   const auto error = [&](const std::string& content) {
@@ -82,7 +82,7 @@ TEST(Pgm, plain_and_raw_read_the_same) {
   EXPECT_EQ(a->pixels, b->pixels);
 }
 
-TEST(Pgm, refuses_what_is_damaged) {
+TEST(Pgm, refuses_damaged_files) {
   for (const std::string_view bad :
        {"", "P", "P2", "P2 2", "P2 2 2", "P2 2 2 255", "P2 2 2 255 1 2 3", "P2 2 2 255 1 2 3 256",
         "P2 0 2 255 1", "P2 -1 2 255 1", "P2 99999999999 2 255 1", "P2 60000 60000 255 1", "P2 2 2 0 1 2 3 4",

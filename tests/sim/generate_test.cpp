@@ -73,13 +73,13 @@ TEST(GeneratedWorlds, SeedsDiffer) {
     EXPECT_NE(generate_world(kind, 1)->boxes, generate_world(kind, 2)->boxes) << kind;
 }
 
-TEST(GeneratedWorlds, StairsAreForWhoClimbsThem) {
+TEST(GeneratedWorlds, StairsAreForClimbingPlatforms) {
   const auto made = generate_world("stairs", 1).value();
   EXPECT_GT(reachable(made, standing_map(made, 0.22), 0.5),
             reachable(made, standing_map(made, 0.08), 0.5) + 0.1);
 }
 
-TEST(GeneratedWorlds, WhatIsNoKindIsAnError) {
+TEST(GeneratedWorlds, RefusesAnUnknownKind) {
   EXPECT_EQ(generate_world("castle", 1).reason(), Reason::bad_argument);
 }
 

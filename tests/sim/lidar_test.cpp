@@ -123,7 +123,7 @@ TEST(PlanarLidar, GroundThatRisesAndFallsIsGround) {
   }
 }
 
-TEST(PlanarLidar, SeesNothingBehindWhatStands) {
+TEST(PlanarLidar, SeesNothingBehindAnObstacle) {
   const std::array<Box, 2> boxes{Box{2, 2.2, -1, 1, 0, 3}, Box{3, 3.2, -0.2, 0.2, 0, 3}};
   EXPECT_NEAR(ahead(boxes, 0), 2.0, 1e-3);
 }

@@ -90,7 +90,7 @@ TEST(MapTruth, AMapBesideTheTruthIsWrong) {
   EXPECT_EQ(judge_map(through, seen.points(), *world).wrong_free, 0.75);
 }
 
-TEST(MapTruth, NothingKnownIsNothingHeld) {
+TEST(MapTruth, EmptyMapHasNoShareAndNoErrors) {
   const auto world = walled_room();
   const MapJudgement judged = judge_map({}, seen_in(world).points(), *world);
   EXPECT_EQ(judged.share, 0.0);

@@ -109,7 +109,7 @@ TEST(OctomapWorld, the_lowest_floor_with_headroom_counts) {
   EXPECT_EQ(world->ground_height(1e9, 0.5, 0.5).reason(), Reason::out_of_range);
 }
 
-TEST(OctomapWorld, says_what_is_wrong_with_a_file) {
+TEST(OctomapWorld, names_the_error_in_a_file) {
   const Scratch scratch;
   const auto reason = [&](std::string_view content) {
     const auto world = load_octomap(scratch.write("bad.bt", content));
@@ -144,11 +144,11 @@ TEST(OctomapWorld, survives_damaged_files) {
     for (int y = 0; y < 12; ++y)
       for (int z = 0; z < 8; ++z) mark(tree, x, y, z, z == 0 || x == 7);
   ASSERT_TRUE(load(scratch, tree));
-  const std::string whole = *read_file(scratch.path("map.bt"));
+  const std::string complete = *read_file(scratch.path("map.bt"));
   Random random(3);
   int refused = 0;
   for (int round = 0; round < 300; ++round) {
-    std::string content = whole;
+    std::string content = complete;
     if (round % 2) content.resize(random.next() % content.size());
     for (int n = 0; n < 3 && !content.empty(); ++n)
       content[random.next() % content.size()] = static_cast<char>(random.next());

@@ -62,7 +62,7 @@ void run(Simulation& s, double seconds, const Twist2& velocity = {}) {
   }
 }
 
-TEST(Person, WhoYieldsToNobodyCausesTheContactWithARobotThatStands) {
+TEST(Person, WithoutYieldingCausesTheContactWithAStationaryRobot) {
   Simulation s = with({{{{5, 0}, {-5, 0}}, 1.5, false}});
   run(s, 4);
   ASSERT_EQ(s.collisions().size(), 1u) << "he leans on it, once";
@@ -74,7 +74,7 @@ TEST(Person, WhoYieldsToNobodyCausesTheContactWithARobotThatStands) {
   EXPECT_NEAR(x(s), 0.3 + Person::kSize / 2, 0.02) << "he does not pass through it";
 }
 
-TEST(Person, WhoCatchesARobotUpThatDrivesAwayCausesTheContact) {
+TEST(Person, CatchingUpWithARobotCausesTheContact) {
   Simulation s = with({{{{5, 0}, {-15, 0}}, 1.5, false}});
   run(s, 10, {-0.8, 0, 0});
   ASSERT_GE(s.collisions().size(), 1u);
@@ -102,7 +102,7 @@ TEST(Person, IsHitByARobotThatTurnsIntoHim) {
   EXPECT_FALSE(s.collisions()[0].by_partner);
 }
 
-TEST(Person, WhoRunsIntoTheSideOfARobotThatPassesCausesIt) {
+TEST(Person, RunningIntoTheSideOfAPassingRobotCausesTheContact) {
   Simulation s = with({{{{2, 3}, {2, -3}}, 1.5, false}}, {0.3, 0, 0});
   run(s, 4, {1, 0, 0});
   ASSERT_GE(s.collisions().size(), 1u);

@@ -66,7 +66,7 @@ TEST(Picture, an_empty_run_is_a_map) {
   EXPECT_TRUE(write_picture(*make_box_world({}, 0, 3), {}, scratch.path("empty.png")));
 }
 
-TEST(Picture, says_what_is_wrong) {
+TEST(Picture, names_the_error) {
   const Scratch scratch;
   const auto nowhere = write_picture(open_room(), run(), scratch.path("no/such/folder.png"));
   EXPECT_EQ(nowhere.reason(), Reason::cannot_write);
@@ -79,7 +79,7 @@ TEST(Picture, says_what_is_wrong) {
   EXPECT_EQ(write_picture(open_room(), spec, scratch.path("a.png")).reason(), Reason::bad_argument);
 }
 
-TEST(GroundPlan, tells_walls_from_furniture) {
+TEST(GroundPlan, distinguishes_walls_from_furniture) {
   const World world = open_room();
   const GroundPlan plan = make_ground_plan(world, 0.5);
   const auto kind = [&](double x, double y) {

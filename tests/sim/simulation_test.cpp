@@ -46,7 +46,7 @@ double ahead(const Box& box, std::vector<RobotStart> others = {}) {
   return 0.0;
 }
 
-TEST(Simulation, what_flies_passes_over_and_touches_what_is_at_its_height) {
+TEST(Simulation, flying_robot_touches_only_obstacles_at_its_height) {
   Platform flyer = wheeled();
   flyer.name = "aerial";
   flyer.drive = Drive::aerial;

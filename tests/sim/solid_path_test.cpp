@@ -23,7 +23,7 @@ TEST(SolidPath, AWallCountsByItsThicknessOnTheWay) {
   EXPECT_EQ(solid_between(world.grid(), {1, 1, 1}, {1, 1, 1}, kAll), 0.0);
 }
 
-TEST(SolidPath, OverAWallThatDoesNotReachTheCeilingNothingIsInTheWay) {
+TEST(SolidPath, IsFreeOverALowWall) {
   const World world = room({{4, 4.5, -5, 5, 0, 1}});
   EXPECT_NEAR(solid_between(world.grid(), {0, 0, 2}, {9, 0, 2}, kAll), 0.0, 1e-9);
   EXPECT_NEAR(solid_between(world.grid(), {0, 0, 0.5}, {9, 0, 0.5}, kAll), 0.5, 1e-9);

@@ -52,7 +52,7 @@ TEST(PowerCut, at_every_step_of_a_first_write_leaves_nothing_or_the_file) {
     }
 }
 
-TEST(PowerCut, takes_only_the_end_of_what_was_being_appended) {
+TEST(PowerCut, loses_only_the_end_of_an_append) {
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
     for (std::uint64_t at = 0; at <= 6; ++at) {
       MemoryDisk disk(seed);
@@ -68,7 +68,7 @@ TEST(PowerCut, takes_only_the_end_of_what_was_being_appended) {
 }
 
 /// The model itself: without the steps that replace() takes, a power cut does harm.
-TEST(PowerCut, tears_what_was_not_synced) {
+TEST(PowerCut, tears_unsynced_writes) {
   bool lost = false, torn = false;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     MemoryDisk disk(seed);

@@ -27,9 +27,9 @@ TEST(Sections, give_back_what_was_packed) {
 }
 
 TEST(Sections, lose_one_to_a_damaged_byte) {
-  const Bytes whole = pack_sections(three());
-  for (std::size_t at = 0; at < whole.size(); ++at) {
-    Bytes bent = whole;
+  const Bytes complete = pack_sections(three());
+  for (std::size_t at = 0; at < complete.size(); ++at) {
+    Bytes bent = complete;
     bent[at] ^= 1;
     const auto list = unpack_sections(bent);
     ASSERT_TRUE(list.readable) << at;
@@ -40,9 +40,9 @@ TEST(Sections, lose_one_to_a_damaged_byte) {
 }
 
 TEST(Sections, lose_the_end_to_a_file_that_ends_early) {
-  const Bytes whole = pack_sections(three());
-  for (std::size_t size = 0; size < whole.size(); ++size) {
-    const auto list = unpack_sections(std::span(whole).first(size));
+  const Bytes complete = pack_sections(three());
+  for (std::size_t size = 0; size < complete.size(); ++size) {
+    const auto list = unpack_sections(std::span(complete).first(size));
     if (list.readable) {
       EXPECT_EQ(list.good.size() + list.damaged.size(), 3u);
       EXPECT_FALSE(list.damaged.empty());
@@ -57,9 +57,9 @@ TEST(Sections, are_bounded) {
 
 TEST(Sections, take_any_bytes) {
   Random random(5);
-  const Bytes whole = pack_sections(three());
+  const Bytes complete = pack_sections(three());
   for (int i = 0; i < 5000; ++i) {
-    Bytes junk = random.chance(0.8) ? whole : Bytes(random.below(300));
+    Bytes junk = random.chance(0.8) ? complete : Bytes(random.below(300));
     for (std::uint64_t edits = 1 + random.below(6); edits > 0 && !junk.empty(); --edits)
       junk[random.below(junk.size())] = static_cast<std::uint8_t>(random.next());
     if (random.chance(0.3)) junk.resize(random.below(junk.size() + 20));

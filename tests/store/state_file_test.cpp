@@ -48,19 +48,19 @@ TEST(StateFile, takes_no_more_than_its_format_allows) {
   EXPECT_EQ(file.load().generation, 1u);
 }
 
-TEST(StateFile, knows_what_ends_too_early) {
-  const Bytes whole = sealed();
-  for (std::size_t size = 0; size < whole.size(); ++size) {
-    const State state = decode_envelope(kFormat, std::span(whole).first(size));
+TEST(StateFile, detects_a_torn_file) {
+  const Bytes complete = sealed();
+  for (std::size_t size = 0; size < complete.size(); ++size) {
+    const State state = decode_envelope(kFormat, std::span(complete).first(size));
     EXPECT_EQ(state.found, LoadStatus::torn) << size << " bytes";
     EXPECT_TRUE(state.payload.empty());
     EXPECT_THAT(state.text, HasSubstr(std::to_string(size)));
   }
-  EXPECT_EQ(decode_envelope(kFormat, Bytes(whole.size(), 0)).found, LoadStatus::torn)
+  EXPECT_EQ(decode_envelope(kFormat, Bytes(complete.size(), 0)).found, LoadStatus::torn)
       << "blocks that were never written";
 }
 
-TEST(StateFile, knows_every_byte_that_is_not_what_was_written) {
+TEST(StateFile, detects_every_changed_byte) {
   for (std::size_t at = 0; at < sealed().size(); ++at)
     for (int bit = 0; bit < 8; ++bit) {
       Bytes bent = sealed();
@@ -76,7 +76,7 @@ TEST(StateFile, knows_every_byte_that_is_not_what_was_written) {
   EXPECT_EQ(decode_envelope(kFormat, longer).found, LoadStatus::corrupt);
 }
 
-TEST(StateFile, tells_older_and_newer_versions_apart) {
+TEST(StateFile, distinguishes_older_and_newer_versions) {
   EXPECT_EQ(decode_envelope(kFormat, sealed(2)).found, LoadStatus::older);
   EXPECT_EQ(decode_envelope(kFormat, sealed(2)).version, 2);
   EXPECT_EQ(decode_envelope(kFormat, sealed(2)).payload, bytes("holder op1"))
@@ -86,7 +86,7 @@ TEST(StateFile, tells_older_and_newer_versions_apart) {
   EXPECT_THAT(decode_envelope(kFormat, sealed(4)).text, HasSubstr("version 4"));
 }
 
-TEST(StateFile, knows_what_is_not_its_own) {
+TEST(StateFile, detects_a_foreign_file) {
   StateFormat other = kFormat;
   other.kind = {'E', 'L', 'S', 'E'};
   EXPECT_EQ(decode_envelope(kFormat, encode_envelope(other, 1, {})).found, LoadStatus::foreign);
@@ -132,13 +132,13 @@ TEST(StateFile, is_the_old_or_the_new_state_after_a_power_cut_at_every_byte) {
       const StateFile file(disk, "state", kFormat);
       ASSERT_TRUE(file.save(1, old).ok());
       disk->cut_power_after(at);
-      const bool told = file.save(2, fresh).ok();
+      const bool saved = file.save(2, fresh).ok();
       disk->cut_power();
       disk->power_up();
       const State state = file.load();
       ASSERT_EQ(state.found, LoadStatus::good) << "step " << at << ", seed " << seed << ": " << state.text;
       ASSERT_EQ(state.payload, state.generation == 1 ? old : fresh);
-      ASSERT_TRUE(!told || state.generation == 2);
+      ASSERT_TRUE(!saved || state.generation == 2);
       ++(state.generation == 1 ? olds : news);
       // And the next write works on whatever was left behind.
       ASSERT_TRUE(file.save(3, old).ok());

@@ -25,7 +25,7 @@ double sent_in(Pacer& pacer, const wire::SenderState& link, Duration span, std::
   return bytes;
 }
 
-TEST(Pacer, UsesItsShareOfAThinLinkWhateverTheNumberOfPeers) {
+TEST(Pacer, UsesItsShareOfAThinLinkForAnyNumberOfPeers) {
   for (const double bandwidth : {100e3, 500e3})
     for (const std::size_t peers : {1, 2, 3}) {
       wire::LinkProfile profile{.name = "mesh", .bandwidth = bandwidth};
@@ -83,7 +83,7 @@ TEST(Pacer, FallsBackWhenTheQueueDropsMessages) {
   EXPECT_LT(pacer.rate(), before / 2);
 }
 
-TEST(Pacer, FallsBackWhereNoProfileTellsAndMostPiecesAreLost) {
+TEST(Pacer, FallsBackWithoutALinkProfileWhenMostPiecesAreLost) {
   wire::SenderState unknown;
   Pacer pacer;
   pacer.observe(Time{}, unknown, 1);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kThin = 100e3, kWide = 20e6;
 
-TEST(Receiver, ReceiptHasExactlyWhatArrivedInAnyOrder) {
+TEST(Receiver, ReceiptHasExactlyThePiecesThatArrived) {
   Random random(7);
   for (int run = 0; run < 50; ++run) {
     Receiver receiver;

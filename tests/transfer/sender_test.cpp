@@ -190,7 +190,7 @@ TEST_F(TransferTest, KeepsToItsShareOfTheLink) {
   EXPECT_LT(share, 0.6);
 }
 
-TEST_F(TransferTest, APieceSaysWhatWaitsOfAllSources) {
+TEST_F(TransferTest, PieceCountsWaitingPartsOfAllSources) {
   ToySource other;
   for (int part = 0; part < 7; ++part) other.set(static_cast<std::uint8_t>(part), 1);
   sender.add(other);

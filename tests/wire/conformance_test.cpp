@@ -102,7 +102,7 @@ TYPED_TEST(Conformance, ARevokedReaderHandlesNothing) {
   EXPECT_EQ(total(*this->robot, &TopicCount::malformed), 0U);
 }
 
-TYPED_TEST(Conformance, WhatAComponentOpenedEndsWithItsGeneration) {
+TYPED_TEST(Conformance, EndpointsEndWithTheGenerationOfTheirComponent) {
   const auto generation = std::make_shared<Generation>();
   const ComponentIo io{*this->robot, *this->strand, generation};
   Seen<std::uint64_t> own, others;
@@ -130,7 +130,7 @@ TYPED_TEST(Conformance, WhatAComponentOpenedEndsWithItsGeneration) {
   EXPECT_EQ(others.all(), (Seqs{1, 3}));
 }
 
-TYPED_TEST(Conformance, TheSenderIsKnownWhateverTheSampleSays) {
+TYPED_TEST(Conformance, SenderIsKnownIndependentOfTheSample) {
   Seen<ParticipantId> senders;
   const auto reader =
       make_reader(*this->robot, topics::kCommand, *this->strand,

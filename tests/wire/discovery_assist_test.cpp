@@ -131,7 +131,7 @@ struct Talk {
   }
 };
 
-TEST(DiscoveryAssist, TellsWhomItHeardUntilThatShowsThatItHeardUs) {
+TEST(DiscoveryAssist, RepeatsAnnouncementUntilAcknowledged) {
   Talk talk;
   const Bytes own = announcement(1, 7410);
   EXPECT_TRUE(talk.sends(own, 7400));
@@ -157,7 +157,7 @@ TEST(DiscoveryAssist, GivesUpUntilItHearsThePeerAgain) {
   EXPECT_EQ(talk.pass(1min), static_cast<std::size_t>(Discovery::kAnnounceRetries));
 }
 
-TEST(DiscoveryAssist, WhoKnowsUsIsToldByMulticastAlone) {
+TEST(DiscoveryAssist, AnnouncesByMulticastAloneToAPeerThatKnowsUs) {
   Talk talk;
   const Bytes own = announcement(1, 7410);
   talk.sends(own, 7400);
@@ -266,9 +266,9 @@ TEST(DiscoveryAssist, HelpsANewcomerAfterManyPeersFellSilent) {
 TEST(DiscoveryAssist, CutShortOrStrangeMessagesAreOfNoConcern) {
   Talk talk;
   talk.sends(announcement(1, 7410), 7400);
-  for (const Bytes& whole : {announcement(2, kPortOfPeer), heartbeat(5, 1), acknack(0)}) {
-    for (std::size_t n = 0; n < whole.size(); ++n) {
-      Bytes cut(whole.begin(), whole.begin() + static_cast<long>(n));
+  for (const Bytes& complete : {announcement(2, kPortOfPeer), heartbeat(5, 1), acknack(0)}) {
+    for (std::size_t n = 0; n < complete.size(); ++n) {
+      Bytes cut(complete.begin(), complete.begin() + static_cast<long>(n));
       talk.hears(cut);
       (void)talk.assist.sent(cut, kLocalhost, 7410, talk.now);
     }

@@ -144,7 +144,7 @@ TYPED_TEST(LinkConformance, ASaturatedLinkCarriesItsBandwidthAndUrgentGoesFirst)
   EXPECT_LT(took.back(), 150ms);
 }
 
-TYPED_TEST(LinkConformance, TheSenderKnowsItsQueueAndWhatItDroppedAndWhatPeersGot) {
+TYPED_TEST(LinkConformance, SenderStateCountsQueueDropsAndDeliveries) {
   this->open({.bandwidth = 50e3, .latency = 0.01, .queue = 1.0});
   const SenderState rest = this->a->sender();
   ASSERT_NE(rest.link, nullptr);
@@ -210,7 +210,7 @@ TYPED_TEST(LinkConformance, OfStatesTheNewestOfEachKeyIsSent) {
   EXPECT_LT(keys.size(), 6U);
 }
 
-TEST(LiveRange, WhoIsBelievedFarAwayHearsNothingUntilHeIsNear) {
+TEST(LiveRange, PeerBelievedOutOfRangeReceivesNothingUntilItIsNear) {
   LiveNet net({{.bandwidth = 1e6, .latency = 0.0, .range = 50.0, .fading = 2.0}});
   const auto strand = net.strand("test");
   const auto a = net.join("a"), b = net.join("b");

@@ -51,7 +51,7 @@ TEST(LinkModel, LosesItsShareOneByOneOrInBursts) {
   EXPECT_NEAR(static_cast<double>(lost) / bursts, 8.0, 0.8);
 }
 
-TEST(LinkModel, ADegradedLinkLosesWhatItIsTold) {
+TEST(LinkModel, DegradedLinkLosesTheGivenShare) {
   LinkProfile link;
   Random random(1);
   LossModel channel;

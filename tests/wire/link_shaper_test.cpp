@@ -73,7 +73,7 @@ Bytes statistics() {
   return body;
 }
 
-TEST(RtpsPeek, ARepairOrAHeartbeatMeansWhatTheOneBeforeMeant) {
+TEST(RtpsPeek, RepeatedSamplesAndHeartbeatsHaveTheSameKey) {
   const auto dedup_key = [](const Bytes& m) { return peek(m).dedup_key; };
   EXPECT_NE(dedup_key(rtps(0x15, 0x103, 1)), 0U);
   EXPECT_EQ(dedup_key(rtps(0x15, 0x103, 1)), dedup_key(rtps(0x15, 0x103, 1)));
@@ -109,7 +109,7 @@ TEST(RtpsPeek, HeartbeatsInProtectedMessagesStayAsTheyAre) {
   }
 }
 
-TEST(RtpsPeek, TellsWhoSentItAndWhomItIsMeantFor) {
+TEST(RtpsPeek, ReadsSourceAndDestination) {
   const RtpsPeek seen = peek(message({Bytes{0x0e, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5}, heartbeat(1, 5, 1)}));
   ParticipantId nine{}, five{};
   nine.fill(9), five.fill(5);
@@ -157,7 +157,7 @@ TEST(RtpsGuard, DropsWhatParsersReadDifferently) {
     EXPECT_EQ(without_vendor_kinds(std::span(cut).first(n), copy).size(), 52U);
 }
 
-TEST(HeartbeatFilter, LetsOneThatSaysNothingNewPassOnlySoOften) {
+TEST(HeartbeatFilter, LimitsTheRateOfUnchangedHeartbeats) {
   HeartbeatFilter filter(200ms);
   const auto passes = [&](const Bytes& m, std::uint16_t port, Duration at) {
     return filter.passes(m, 1, port, at);
@@ -256,7 +256,7 @@ TEST(LinkShaper, SendsByPriorityAndTheNewestOfAStream) {
   EXPECT_EQ(std::count(tags.begin(), tags.end(), 12), 0);
 }
 
-TEST(LinkShaper, TellsWhatWaitsAndWhatWasDroppedByClass) {
+TEST(LinkShaper, CountsQueuedAndDroppedMessagesByClass) {
   Receiver receiver;
   LinkShaper link(LinkProfile{.bandwidth = 1e3, .latency = 0, .queue = 10}, 1, kInterfaces, {});
   link.add_writer(0x203, 3, true);
@@ -286,7 +286,7 @@ TEST(LinkShaper, BeyondTheRangeNothingArrives) {
   EXPECT_EQ(receiver.tags(1, 100), Bytes{8});
 }
 
-TEST(LinkShaper, WhatIsAskedForAgainWhileItWaitsIsSentOnce) {
+TEST(LinkShaper, SendsAQueuedRepairOnce) {
   Receiver receiver;
   LinkShaper link(LinkProfile{.bandwidth = 3500, .latency = 0, .queue = 8}, 1, kInterfaces, {});
   for (int i = 0; i < 10; ++i) {
@@ -319,7 +319,7 @@ struct FullRadio {
   Bytes taken{};
 };
 
-TEST(LinkShaper, WhatARealRadioRefusesWaitsByPriority) {
+TEST(LinkShaper, QueuesDatagramsRefusedByTheSocketByPriority) {
   FullRadio radio;
   LinkShaper link(std::nullopt, 1, radio.socket(), {});
   link.add_writer(0x103, 0, false);
@@ -338,7 +338,7 @@ TEST(LinkShaper, WhatARealRadioRefusesWaitsByPriority) {
   EXPECT_EQ(radio.tags().size(), 4U);  // on the caller's thread
 }
 
-TEST(LinkShaper, WhatARealRadioRefusesForTooLongIsDroppedAndCounted) {
+TEST(LinkShaper, DropsAndCountsDatagramsRefusedForTooLong) {
   FullRadio radio;
   LinkShaper link(std::nullopt, 1, radio.socket(), {});
   link.add_writer(0x203, 3, false);
@@ -363,7 +363,7 @@ TEST(LinkShaper, LosesDropsAndCounts) {
   EXPECT_LE(receiver.tags(0, 50).size(), 2U);
 }
 
-TEST(LinkShaper, WhatWaitsIsSentBeforeItEnds) {
+TEST(LinkShaper, SendsItsQueueBeforeItEnds) {
   Receiver receiver;
   {
     LinkShaper link(LinkProfile{.bandwidth = 1e6, .latency = 0.1}, 1, kInterfaces, {});

@@ -176,7 +176,7 @@ TEST(LiveWire, PortsThatWereTakenAreNotItsOwn) {
   for (const int fd : taken) ::close(fd);
 }
 
-TEST(LiveWire, LargeScansPassWhole) {
+TEST(LiveWire, LargeScansArriveComplete) {
   LiveNet net;
   FastDdsParams params{.domain = live::domain(2), .large_samples = true};
   const auto strand = net.strand("test");

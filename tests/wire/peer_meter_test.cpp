@@ -8,7 +8,7 @@ namespace {
 
 Time at(double s) { return Time(from_seconds(s)); }
 
-TEST(PeerMeter, LossIsWhatIsMissingAmongTheLastNumbers) {
+TEST(PeerMeter, LossIsTheShareOfMissingSequenceNumbers) {
   PeerMeter meter;
   for (std::uint32_t i = 1; i <= 100; ++i)
     if (i % 4 != 0) meter.heard("r1", i, at(i));
@@ -45,7 +45,7 @@ TEST(PeerMeter, APeerThatBeganAnewBeginsAnew) {
   EXPECT_EQ(meter.peer("r1", at(3))->lost, 0.0F);
 }
 
-TEST(PeerMeter, TheRoundTripLeavesOutWhatThePeerHeld) {
+TEST(PeerMeter, RoundTripExcludesThePeersDelay) {
   PeerMeter meter;
   meter.heard("r1", 1, at(0));
   EXPECT_FALSE(meter.peer("r1", at(0))->round_trip);

@@ -61,9 +61,9 @@ TEST(PeerStatistics, StrangersWithoutEndTakeTheSilentOnesPlace) {
   }
   const auto all = book.all({}, nullptr);
   EXPECT_EQ(all.size(), PeerStatistics::kMaxPeers);
-  const auto kept = std::find_if(all.begin(), all.end(), [](auto& p) { return p.peer == id(0, 200); });
-  ASSERT_NE(kept, all.end());
-  EXPECT_GE(kept->bytes_in, 100U);
+  const auto remembered = std::find_if(all.begin(), all.end(), [](auto& p) { return p.peer == id(0, 200); });
+  ASSERT_NE(remembered, all.end());
+  EXPECT_GE(remembered->bytes_in, 100U);
 }
 
 }  // namespace

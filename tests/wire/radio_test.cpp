@@ -40,7 +40,7 @@ void on_a_thin_radio(const std::function<void()>& body) {
   if (!missing.empty()) GTEST_SKIP() << missing;
 }
 
-TEST(Radio, WhatTheSocketsRefuseShowsAtTheSender) {
+TEST(Radio, SenderStateShowsDatagramsRefusedByTheSocket) {
   on_a_thin_radio([] {
     auto wire = open_fastdds({.domain = live::domain(),
                               .interfaces = {"10.79.0.1"},

@@ -119,7 +119,7 @@ TEST(SimulatedNetwork, ALostCommandDoesNotHoldUpTheNext) {
   EXPECT_EQ(robot.seen, (std::vector<std::uint64_t>{1, 3}));
 }
 
-TEST(SimulatedNetwork, WhatIsReplacedBeforeTheAirTookItIsNeverSent) {
+TEST(SimulatedNetwork, ReplacedSampleIsNeverSent) {
   VirtualScheduler scheduler(1);
   SimulatedNetwork network(scheduler, {.link = profile(100e3, 0.01, 0.0)});
   Machine robot(scheduler, network, "r1"), station(scheduler, network, "op1");

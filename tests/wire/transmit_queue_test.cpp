@@ -57,7 +57,7 @@ TEST(TransmitQueue, SendsByPriorityThenInOrder) {
   EXPECT_EQ(line.queue.size(), 0U);
 }
 
-TEST(TransmitQueue, TellsWhatWaitsAndWhatNeverWent) {
+TEST(TransmitQueue, CountsWaitingAndDroppedFrames) {
   Line line;
   line.now = 10s;
   line.push("stop", 0), line.push("map", 5, 0, 3);
@@ -85,7 +85,7 @@ TEST(TransmitQueue, AnUrgentMessageWaitsForOneFrameAtMost) {
   EXPECT_EQ(line.sent, (Names{"map.1", "stop", "map.2", "map.3"}));
 }
 
-TEST(TransmitQueue, TheNewestReplacesWhatWaitsButNotWhatIsHalfSent) {
+TEST(TransmitQueue, NewestReplacesAWaitingMessageButNotAHalfSentOne) {
   Line line;
   line.now = 10s;
   line.push("old", 3, 7), line.push("other", 3, 8), line.push("new", 3, 7);
@@ -100,7 +100,7 @@ TEST(TransmitQueue, TheNewestReplacesWhatWaitsButNotWhatIsHalfSent) {
             (Names{"picture.1", "picture.2", "next.1", "next.2"}));
 }
 
-TEST(TransmitQueue, WhatIsSaidAgainKeepsItsPlaceAndIsNoLoss) {
+TEST(TransmitQueue, RepeatedMessageStaysInPlaceAndIsNoLoss) {
   Queue queue;
   for (const char* text : {"repair", "other", "repair"}) {
     const std::uint64_t number = text[0] == 'r' ? 7 : 8;
@@ -113,7 +113,7 @@ TEST(TransmitQueue, WhatIsSaidAgainKeepsItsPlaceAndIsNoLoss) {
   EXPECT_EQ(first->message.item, "repair");
 }
 
-TEST(TransmitQueue, DropsWhatWaitedTooLong) {
+TEST(TransmitQueue, DropsMessagesThatWaitedTooLong) {
   Line line;
   for (int i = 0; i < 40; ++i) line.push("stop", 0);
   line.run(1s);

@@ -153,9 +153,9 @@ TEST(BlockCoder, TheHalfOfARealMapThatTheTablesNeverSawStaysSmall) {
 TEST(BlockCoder, AnyBytesGiveABoundedSetOrAnError) {
   std::mt19937 random(29);
   std::size_t sets = 0;
-  const auto whole = encoded(noise(60, 2, 6, 5));
+  const auto complete = encoded(noise(60, 2, 6, 5));
   for (int n = 0; n < 1000; ++n) {
-    std::vector<std::uint8_t> bytes = whole;
+    std::vector<std::uint8_t> bytes = complete;
     if (n % 2 == 0) {
       bytes.resize(random() % 1200);
       for (std::uint8_t& byte : bytes)
@@ -230,7 +230,7 @@ Result<BlockSet> applied(std::span<const std::uint8_t> bytes, const FindBase& ba
   return read_blocks(decoder, 2, base);
 }
 
-TEST(BlockBaseTest, ChangesOfAnythingComeBackWhole) {
+TEST(BlockBaseTest, DecodesChangesOfAnyBlock) {
   for (std::uint32_t seed = 1; seed <= 200; ++seed) {
     const BlockSet set = noise(1 + seed % 60, 2, 4, seed);
     const auto bases = older(coarse_blocks(set), seed);
@@ -249,8 +249,8 @@ TEST(BlockBaseTest, AFewMoreVoxelsOfABuildingTakeAFractionOfTheBlocks) {
     const std::uint64_t known = block.known & ~(0xfULL << (block.index.x & 3) * 16);
     bases[block.index] = {block.index, known, block.occupied & known};
   }
-  const std::size_t whole = changes(set, {}).size(), few = changes(set, finder(bases)).size();
-  EXPECT_LT(few, whole * 6 / 10) << whole;
+  const std::size_t all = changes(set, {}).size(), few = changes(set, finder(bases)).size();
+  EXPECT_LT(few, all * 6 / 10) << all;
   EXPECT_EQ(applied(changes(set, finder(bases)), finder(bases)).value(), set);
 }
 

@@ -84,7 +84,7 @@ TEST(OctreeFile, WeReadWhatOctoMapWrites) {
   }
 }
 
-TEST(OctreeFile, SaysWhatIsWrongWithAFile) {
+TEST(OctreeFile, ReportsTheErrorInAFile) {
   const auto reason = [](const std::string& text) { return read_octree(text).reason(); };
   EXPECT_EQ(reason(""), Reason::syntax);
   EXPECT_EQ(reason("ply\n"), Reason::syntax);
@@ -106,11 +106,11 @@ TEST(OctreeFile, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(reason(written(write_bt, sample()) + "more"), Reason::syntax);
 }
 
-TEST(OctreeFile, AFileThatIsCutOffIsRefusedWhereverItIsCut) {
+TEST(OctreeFile, RefusesAFileThatIsCutAtAnyByte) {
   for (const auto write : {write_bt, write_ot}) {
-    const std::string whole = written(write, sample());
-    for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 300)
-      EXPECT_FALSE(read_octree(whole.substr(0, size))) << size;
+    const std::string complete = written(write, sample());
+    for (std::size_t size = 0; size < complete.size(); size += 1 + complete.size() / 300)
+      EXPECT_FALSE(read_octree(complete.substr(0, size))) << size;
   }
 }
 
@@ -119,9 +119,9 @@ TEST(OctreeFile, DamagedFilesDoNoHarm) {
   VoxelImage small(0.1);
   for (int x = -3; x < 3; ++x) small.set({x, 0, 0}, x == 0 ? Voxel::occupied : Voxel::free);
   for (const auto write : {write_bt, write_ot}) {
-    const std::string whole = written(write, small);
+    const std::string complete = written(write, small);
     for (int n = 0; n < 40; ++n) {
-      std::string text = whole;
+      std::string text = complete;
       for (int i = 0; i < 3; ++i) text[random() % text.size()] = static_cast<char>(random());
       const auto read = read_octree(text);
       EXPECT_TRUE(read.ok() || !read.error().text.empty());

@@ -69,7 +69,7 @@ TEST(Piece, HoldsABoundedNumberOfBlocks) {
   EXPECT_EQ(piece->blocks.size(), kMaxPieceBlocks);
 }
 
-TEST(Piece, LeavesOutWhatCannotBeCoded) {
+TEST(Piece, LeavesOutBlocksThatCannotBeCoded) {
   const CoarseBlock here{{1, 2, 3}, 7, 3}, newer{{1, 2, 3}, 15, 3}, far{{BlockIndex::kLimit, 0, 0}, 7, 3};
   const auto piece = decode(encode(MapPiece{kKey, {{newer, 9}, {here, 8}, {far, 10}}}));
   ASSERT_TRUE(piece);
@@ -111,13 +111,13 @@ TEST(Piece, PacksAsManyBlocksAsFit) {
   EXPECT_EQ(pack(kKey, {}, 1200).count, 0u);
 }
 
-TEST(Piece, OfLargerVoxelsShowsEachPartAsTheWhole) {
+TEST(Piece, OfLargerVoxelsShowsAllPartsAlike) {
   const CoarseBlock one{{1, 2, 3}, 0x21, 0x20}, other{{1, 2, 4}, 1ULL << 63, 0};
   const auto piece = decode(encode(MapPiece{kKey, {{one, 4, true}, {other, 4, true}}}));
   ASSERT_TRUE(piece);
-  const CoarseBlock whole{{1, 2, 3}, 0x0033'0033ULL, 0x0033'0033ULL},
+  const CoarseBlock block{{1, 2, 3}, 0x0033'0033ULL, 0x0033'0033ULL},
       corner{{1, 2, 4}, 0xcc00'cc00ULL << 32, 0};
-  EXPECT_EQ(piece->blocks, (std::vector<BlockUpdate>{{whole, 4, true}, {corner, 4, true}}));
+  EXPECT_EQ(piece->blocks, (std::vector<BlockUpdate>{{block, 4, true}, {corner, 4, true}}));
   EXPECT_EQ(piece->blocks.front().stored_revision(), BlockUpdate::kCoarseRevision);
   const auto blocks = corridor(200);
   auto large = blocks;
@@ -145,7 +145,7 @@ TEST(Piece, MayHaveBlocksInLargeAndInSmallVoxels) {
   EXPECT_EQ(piece->blocks, wanted);
 }
 
-TEST(Piece, OfChangesNeedsWhatItChanges) {
+TEST(Piece, OfChangesNeedsTheChangedBlocks) {
   auto blocks = corridor(100);
   std::map<std::pair<SubmapKey, BlockIndex>, CoarseBlock> stored;
   for (BlockUpdate& update : blocks) {
@@ -176,15 +176,16 @@ TEST(Piece, ACorridorTakesFewBytesABlock) {
 
 TEST(Piece, IsRefusedWhenItIsDamaged) {
   const auto blocks = corridor(20);
-  const auto whole = encode(MapPiece{kKey, blocks});
-  for (std::size_t size = 0; size < whole.size(); ++size) EXPECT_FALSE(decode(std::span(whole).first(size)));
+  const auto complete = encode(MapPiece{kKey, blocks});
+  for (std::size_t size = 0; size < complete.size(); ++size)
+    EXPECT_FALSE(decode(std::span(complete).first(size)));
   std::mt19937 random(13);
   for (int n = 0; n < 3000; ++n) {
-    auto bytes = whole;
+    auto bytes = complete;
     const int flips = 1 + static_cast<int>(random() % 3);
     for (int i = 0; i < flips; ++i)
       bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
-    if (bytes == whole) continue;
+    if (bytes == complete) continue;
     const auto piece = decode(bytes);
     // Some bits of Zstandard's header mean nothing; the content is checked.
     EXPECT_TRUE(!piece || piece->blocks == blocks);
@@ -204,21 +205,21 @@ std::vector<std::uint8_t> piece_of(std::uint8_t version, std::uint8_t kind,
 }
 
 TEST(Piece, IsRefusedWhenItsContentIsHostile) {
-  const std::vector<std::uint8_t> whole = encode(MapPiece{kKey, corridor(20)});
-  const std::vector<std::uint8_t> content(whole.begin() + 6, whole.end());
-  ASSERT_TRUE(decode(piece_of(5, whole[1], content)));
+  const std::vector<std::uint8_t> complete = encode(MapPiece{kKey, corridor(20)});
+  const std::vector<std::uint8_t> content(complete.begin() + 6, complete.end());
+  ASSERT_TRUE(decode(piece_of(5, complete[1], content)));
   EXPECT_EQ(decode(encode(SubmapPoses{})).reason(), Reason::malformed);
-  EXPECT_EQ(decode(piece_of(5, whole[1], std::vector<std::uint8_t>(1 << 20))).reason(), Reason::malformed);
+  EXPECT_EQ(decode(piece_of(5, complete[1], std::vector<std::uint8_t>(1 << 20))).reason(), Reason::malformed);
   EXPECT_EQ(decode(encode(MapPiece{{"", 1, 2}, {}})).reason(), Reason::malformed);
 }
 
 TEST(Piece, OfAnotherVersionOrOtherTablesIsRefusedByName) {
-  const std::vector<std::uint8_t> whole = encode(MapPiece{kKey, corridor(20)});
-  const std::vector<std::uint8_t> content(whole.begin() + 6, whole.end());
+  const std::vector<std::uint8_t> complete = encode(MapPiece{kKey, corridor(20)});
+  const std::vector<std::uint8_t> content(complete.begin() + 6, complete.end());
   for (const int version : {0, 1, 2, 3, 4, 255})
-    EXPECT_EQ(decode(piece_of(static_cast<std::uint8_t>(version), whole[1], content)).reason(),
+    EXPECT_EQ(decode(piece_of(static_cast<std::uint8_t>(version), complete[1], content)).reason(),
               Reason::wrong_protocol);
-  EXPECT_EQ(decode(piece_of(5, static_cast<std::uint8_t>(whole[1] + 0x10), content)).reason(),
+  EXPECT_EQ(decode(piece_of(5, static_cast<std::uint8_t>(complete[1] + 0x10), content)).reason(),
             Reason::wrong_protocol);
 }
 

@@ -72,7 +72,7 @@ TEST(SubmapGrid, AHitOutweighsTheRaysThatPassInTheSameScan) {
   EXPECT_EQ(grid.at({1.05f, 0.05f, 0.05f}), Voxel::occupied);
 }
 
-TEST(SubmapGrid, WhatWentAwayIsFreeAfterTwoMissesPerHit) {
+TEST(SubmapGrid, ObstacleThatLeftIsFreeAfterTwoMissesPerHit) {
   SubmapGrid grid;
   const Eigen::Vector3f origin(0.05f, 0.05f, 0.05f), thing(2.05f, 0.05f, 0.05f);
   grid.insert(origin, Points{thing}, 20.0f);
@@ -176,7 +176,7 @@ TEST(SubmapGrid, FreeBlocksShrinkAndGrowAgain) {
   EXPECT_EQ(twice.at({2.75f, 0.05f, 0.05f}), Voxel::free);
 }
 
-TEST(SubmapGrid, TheGroundNextToAGrazingRaysEndIsKept) {
+TEST(SubmapGrid, GrazingRayDoesNotFreeTheGroundNextToItsEnd) {
   SubmapGrid grid;
   const Eigen::Vector3f origin(0.05f, 0.05f, 0.55f), ground(4.05f, 0.05f, 0.05f), before(3.95f, 0.05f, 0.05f);
   for (int n = 0; n < 2; ++n) grid.insert(origin, Points{before}, 20.0f);

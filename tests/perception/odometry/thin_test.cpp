@@ -22,7 +22,7 @@ std::vector<Eigen::Vector3f> room(double size, std::size_t count) {
   return points;
 }
 
-TEST(Thinner, LeavesAboutAsManyPointsWhateverTheRoom) {
+TEST(Thinner, LeavesAboutAsManyPointsInAnyRoom) {
   for (const double size : {2.0, 8.0, 25.0}) {
     Thinner thinner({.wanted = 1500});
     std::size_t left = 0;

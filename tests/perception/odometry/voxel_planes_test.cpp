@@ -65,7 +65,7 @@ TEST(VoxelPlanes, SinglePointsBeyondTheBorderDoNotHideAWall) {
   EXPECT_EQ(found, 40);
 }
 
-TEST(VoxelPlanes, OfAWholeCloudFindsTheSameWallInVoxelsOfAllSizes) {
+TEST(VoxelPlanes, OfACompleteCloudFindsTheSameWallInVoxelsOfAllSizes) {
   VoxelPlanes::Params params;
   params.levels = VoxelPlanes::kMaxLevels;
   Random random(9);
@@ -110,7 +110,7 @@ TEST(VoxelPlanes, AnUprightPoleIsALine) {
   EXPECT_LT(std::abs(line->along.z()), 0.3f);
 }
 
-TEST(VoxelPlanes, ForgetsWhatItLeftBehindAndStaysBounded) {
+TEST(VoxelPlanes, ForgetsPlacesLeftBehindAndStaysBounded) {
   VoxelPlanes map({.keep_distance = 30.0, .max_voxels = 4000});
   Random random(4);
   for (int step = 0; step < 600; ++step) {

@@ -32,20 +32,21 @@ std::vector<Keyframe> scans(const Pose2& start, const Eigen::Vector2d& end, std:
   const auto drive = record_drive(spec);
   EXPECT_TRUE(drive.ok());
   const Pose3 T_base_lidar = spec.platform.lidar().mounting.pose();
-  std::vector<Keyframe> kept;
+  std::vector<Keyframe> keyframes;
   for (const Sweep& sweep : drive->sweeps) {
     const Pose3 T_world_base = drive->truth_at(DriveRecording::end_of(sweep));
-    if (!kept.empty() && (kept.back().T_odom_base.position - T_world_base.position).norm() < 1.0) continue;
+    if (!keyframes.empty() && (keyframes.back().T_odom_base.position - T_world_base.position).norm() < 1.0)
+      continue;
     PointCloud points;
     for (const TimedPoint& p : sweep.points) {
       const auto stamp = sweep.stamp + static_cast<std::uint64_t>(p.time * 1e9);
       const Pose3 T_base = T_world_base.inverse() * drive->truth_at(stamp) * T_base_lidar;
       points.push_back((T_base.orientation * p.position.cast<double>() + T_base.position).cast<float>());
     }
-    kept.push_back(make_keyframe(points, T_world_base, 0));
+    keyframes.push_back(make_keyframe(points, T_world_base, 0));
   }
-  EXPECT_GE(kept.size(), 2U);
-  return kept;
+  EXPECT_GE(keyframes.size(), 2U);
+  return keyframes;
 }
 
 const std::vector<Keyframe>& before() {
