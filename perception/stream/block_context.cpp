@@ -117,7 +117,7 @@ constexpr int value_of(char c) {
   return (at < '\\' ? at : at - 1) - '#';
 }
 
-// 65536 / (1 + exp(-x)) at x = 0.45 (v - 17.5), v = 0..35, kept within what the coder takes.
+// 65536 / (1 + exp(-x)) at x = 0.45 (v - 17.5), v = 0..35, clamped to what the coder takes.
 constexpr std::array<std::uint16_t, ContextTrees::kLeafValues> kLeafProbabilities{
     25,    39,    61,    96,    150,   236,   369,   576,   899,   1399,  2168,  3338,
     5088,  7642,  11240, 16062, 22110, 29097, 36439, 43426, 49474, 54296, 57894, 60448,

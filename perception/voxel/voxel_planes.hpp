@@ -46,7 +46,7 @@ class VoxelPlanes {
     std::size_t max_voxels{60'000};  ///< Of each level; further ones are not made.
   };
   explicit VoxelPlanes(const Params& params) : params_(params) {}
-  /// The planes of clouds that are known as a whole (frame of the map, m). All points count, and a larger
+  /// The planes of clouds that are complete (frame of the map, m). All points count, and a larger
   /// voxel is the sum of the smaller ones in it, so that this takes a fraction of the time of insert().
   static VoxelPlanes of(std::span<const Eigen::Vector3f> points, const Params& params);
 

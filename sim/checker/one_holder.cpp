@@ -63,7 +63,7 @@ class OneHolder : public Rule {
     const CommandHeard& command = pending->command;
     if (const AckSent* first = robot.first_answer(RobotModel::key(command))) {
       // What was accepted is answered so after a restart, too, or refused as too old. A refusal had no
-      // effect, and need not be kept: another one will do.
+      // effect, and need not be stored: another one will do.
       const bool other_refusal =
           robot.before() && !ack.accepted && (!first->accepted || ack.reason == Reason::stale_sequence);
       if (!other_refusal && (first->accepted != ack.accepted || first->reason != ack.reason))

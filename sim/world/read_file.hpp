@@ -7,7 +7,7 @@
 
 namespace adit::sim {
 
-/// The whole of a file, up to 256 MB. Reason::cannot_read names the file and what to do.
+/// The content of a file, up to 256 MB. Reason::cannot_read names the file and what to do.
 Result<std::string> read_file(const std::filesystem::path& file);
 
 }  // namespace adit::sim

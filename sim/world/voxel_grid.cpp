@@ -265,7 +265,7 @@ void VoxelGrid::cast_each(const Start& from, std::span<const Eigen::Vector3d> di
       const double side = std::min(tx, ty);
       const int last = k + ray.dk * (ray.up ? stride.layers >> 4 : stride.layers & kMostLayers);
       const double tz = border(last);
-      // The axes that do not cross a border are kept inside the square: rounding cannot lead astray.
+      // The axes that do not cross a border are clamped to the square: rounding cannot lead astray.
       if (tz < side) {
         t = std::max(t, tz);
         if (t >= max_range) {
