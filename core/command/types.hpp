@@ -11,6 +11,7 @@
 /// The types that describe one command; core/command/table.hpp uses them.
 namespace adit::command {
 
+/// Type of a command's argument.
 enum class Type : std::uint8_t {
   none,
   robots,   ///< Robot names; they address the command and are not part of its payload.

@@ -18,6 +18,7 @@
 /// (Component::call). core/component/README.md has an example.
 namespace adit {
 
+/// Deadline of a call, and the generation of its caller.
 struct CallSpec {
   /// Time from the call to its completion, by the caller's clock, (0, 1 h]; after it the completion carries
   /// no_answer.

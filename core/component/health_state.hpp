@@ -21,6 +21,7 @@ struct ComponentHealth {
   std::string last_failure{};  ///< Text of the newest exception, "" when there was none.
 };
 
+/// Periods of the heartbeat and of the memory of failures.
 struct HealthParams {
   Duration beat{200ms};          ///< Period of the heartbeat, [1 ms, 10 s].
   Duration silence{1s};          ///< Time without a heartbeat after which it is unhealthy.

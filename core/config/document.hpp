@@ -9,6 +9,7 @@
 
 namespace adit::config {
 
+/// A node of a YAML file: null, a scalar, a list or a mapping.
 struct Value {
   enum class Kind { null, scalar, list, mapping };
   struct Entry {
@@ -26,6 +27,7 @@ struct Value {
   mutable bool checked{false};  ///< Set by finish(); with aliases one value appears more than once.
 };
 
+/// A YAML file as a tree of values. Collects the errors that its readers find.
 class Document {
  public:
   Document(std::string file, std::shared_ptr<Value> root) : file_(std::move(file)), root_(std::move(root)) {}

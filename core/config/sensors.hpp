@@ -28,6 +28,7 @@ struct Mounting {
   bool upside_down() const { return std::cos(roll) * std::cos(pitch) < 0; }
 };
 
+/// A lidar of a platform: mounting, topic, beams and errors.
 struct LidarConfig {
   Mounting mounting{};
   std::string topic{"points"};  ///< Topic of its driver, without the leading slash.
@@ -41,6 +42,7 @@ struct LidarConfig {
   double noise{0.02};           ///< Standard deviation of a range, m, [0, 0.5].
 };
 
+/// The IMU of a platform: mounting and topic.
 struct ImuConfig {
   Mounting mounting{};
   std::string topic{"imu/data"};

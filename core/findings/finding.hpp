@@ -12,12 +12,14 @@
 /// Findings of robots, on robots and stations alike (rule 9): a set keyed by (robot, id).
 namespace adit::findings {
 
+/// Identity of a finding.
 struct Key {
   std::string robot{};
   std::uint64_t id{};
   auto operator<=>(const Key&) const = default;
 };
 
+/// Something that a robot found, with its kind, place and importance.
 struct Finding {
   static constexpr std::size_t kKind = 32, kText = 128, kData = 400;
 

@@ -12,6 +12,7 @@
 
 namespace adit::findings {
 
+/// Parameters of FindingStore.
 struct FindingStoreParams {
   std::size_t max_findings{512};  ///< Largest number of findings, [1, 65536].
   Duration write{3ms};            ///< Duration of a batch in rehearsal.
@@ -34,6 +35,7 @@ struct LoadReport {
 /// Stores findings in memory and on disk, one file each, written in batches in parallel to the home strand.
 class FindingStore {
  public:
+  /// Callbacks of the store, on its strand.
   struct Outputs {
     std::function<void(const Key&)> stored{};  ///< Called when the finding is on disk.
     /// Called when the disk begins to fail (with the reason), or works again.

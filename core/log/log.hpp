@@ -18,6 +18,7 @@ std::string_view name(LogLevel level);
 /// Parses the name of a level; returns false when there is none of that name.
 bool level_from_name(std::string_view text, LogLevel& out);
 
+/// One line of the log.
 struct LogLine {
   LogLevel level{LogLevel::info};
   bool has_time{false};
@@ -57,6 +58,7 @@ class MemoryLog final : public LogSink {
   std::deque<std::string> lines_{};
 };
 
+/// Parameters of a log that writes to the console and to a file.
 struct LiveLogParams {
   LogLevel level{LogLevel::info};
   bool console{true};              ///< Writes to stderr.

@@ -15,6 +15,7 @@ namespace adit::record {
 /// ~/.local/state/adit/recordings.
 std::string default_folder();
 
+/// Parameters of FlightRecorder.
 struct FlightRecorderParams {
   std::string folder{};  ///< "none": no recording; empty: default_folder().
   std::string name{};    ///< Name of the agent or station.

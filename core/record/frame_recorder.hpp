@@ -9,6 +9,7 @@
 
 namespace adit::record {
 
+/// Parameters of FrameRecorder.
 struct FrameRecorderParams {
   std::string file{};
   std::uint32_t radio_domain{77};  ///< All other domains are inner networks.

@@ -11,6 +11,7 @@ namespace adit::record {
 
 inline constexpr std::array<std::uint8_t, 8> kMcapMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 
+/// Kinds of MCAP records.
 enum class Opcode : std::uint8_t {
   header = 0x01,
   footer = 0x02,
@@ -32,6 +33,7 @@ enum class Opcode : std::uint8_t {
 /// Opcode and length precede every record.
 inline constexpr std::size_t kRecordHead = 9;
 
+/// Type of a channel's messages, as its IDL text.
 struct Schema {
   std::uint16_t id{};      ///< Never 0 in a file.
   std::string name{};      ///< Name of the message's type, "adit::radio::Command".
@@ -39,6 +41,7 @@ struct Schema {
   std::string text{};      ///< The type and all types that it needs.
 };
 
+/// A topic of a recording.
 struct Channel {
   std::uint16_t id{};
   std::uint16_t schema{};  ///< 0: none.
@@ -47,6 +50,7 @@ struct Channel {
   Text metadata{};
 };
 
+/// One recorded message.
 struct Message {
   std::uint16_t channel{};
   std::uint32_t sequence{};  ///< Sequence number within the channel.

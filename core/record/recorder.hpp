@@ -16,6 +16,7 @@
 
 namespace adit::record {
 
+/// Parameters of Recorder.
 struct RecorderParams {
   RingParams ring{};
   std::size_t queue_bytes{4 << 20};  ///< Size of the queue, bytes; further messages are dropped and counted.
@@ -32,6 +33,7 @@ struct RecorderParams {
   std::function<void(const std::string& text)> on_error{};
 };
 
+/// Counters of a recorder since its start.
 struct RecorderCounters {
   std::uint64_t recorded{}, dropped{};  ///< Numbers of messages; dropped: the queue or the disk was full.
   std::uint64_t thinned{};              ///< Large messages left out on purpose.

@@ -10,6 +10,7 @@
 
 namespace adit::record {
 
+/// Folder, names and sizes of the files of a ring.
 struct RingParams {
   std::string folder{};  ///< Created when missing, mode 0700.
   std::string name{};    ///< Files are NAME-000001.mcap and so on; [A-Za-z0-9_-].

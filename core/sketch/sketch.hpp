@@ -7,6 +7,7 @@
 
 namespace adit {
 
+/// A colour with its opacity; each part in [0, 1].
 struct Colour {
   double r, g, b, a{1.0};
 };

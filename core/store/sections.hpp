@@ -13,6 +13,7 @@ namespace adit::store {
 /// Names one kind of section, for example {'S', 'T', 'O', 'P'}.
 using SectionTag = std::array<char, 4>;
 
+/// A tagged part of a file, with a checksum of its own.
 struct Section {
   SectionTag tag{};
   std::uint16_t version{1};  ///< Version of the payload's layout.

@@ -30,6 +30,7 @@ enum class LoadStatus {
 /// Name for users, such as "torn".
 std::string_view name(LoadStatus found);
 
+/// Result of loading a state.
 struct State {
   LoadStatus found{LoadStatus::nothing};
   std::string text{};          ///< Error text for users; empty when `good` or `nothing`.

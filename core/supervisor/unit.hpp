@@ -35,6 +35,7 @@ struct LeftBehind {
   std::vector<std::shared_ptr<ComponentSlot>> slots{};
 };
 
+/// Parameters of a Unit.
 struct UnitParams {
   std::string name{};
   bool dedicated{false};  ///< Runs on a Runtime::dedicated_strand.

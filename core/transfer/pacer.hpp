@@ -8,6 +8,7 @@
 
 namespace adit::transfer {
 
+/// Parameters of Pacer.
 struct PacerParams {
   double share{0.55};           ///< Part of the link's bandwidth, (0, 1]; the class may use 0.6 of it.
   double max_rate{60e3};        ///< Largest rate over all peers, bytes/s.

@@ -11,6 +11,7 @@
 
 namespace adit::transfer {
 
+/// Parameters of Receiver.
 struct ReceiverParams {
   Duration slow{1s};             ///< Shortest time between two acknowledgements on a thin link.
   Duration fast{250ms};          ///< The same on others.

@@ -10,6 +10,7 @@
 
 namespace adit::transfer {
 
+/// Parameters of Sender.
 struct SenderParams {
   std::uint32_t session{1};       ///< Drawn at each start of the sender, not 0.
   std::size_t max_peers{16};      ///< Peers whose content is remembered, [1, 16].
@@ -60,6 +61,7 @@ class Sender {
 
  private:
   static constexpr std::size_t kStarts = 4;  ///< Earlier starts of a peer that are remembered.
+  /// A peer that acknowledges.
   struct Peer {
     std::uint32_t start{};
     std::deque<std::uint32_t> earlier{};  ///< Starts that ended: their acknowledgements come late.

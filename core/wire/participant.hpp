@@ -60,6 +60,7 @@ class RawReader {
 /// bytes could not be decoded: the wire counts the sample as malformed, by sender.
 using RawHandler = std::function<bool(std::span<const std::uint8_t> cdr, const SampleInfo&)>;
 
+/// A participant that appeared, left or changed.
 struct ParticipantEvent {
   ParticipantId id{};
   bool present{};  ///< False: it left, or its lease expired.
@@ -78,6 +79,7 @@ struct TopicCount {
   std::uint64_t overwritten{};  ///< Samples replaced by a newer one before the reader's strand took them.
 };
 
+/// Traffic of a participant since its start.
 struct WireCounters {
   std::vector<TopicCount> topics{};               ///< Sorted by topic, then peer.
   std::uint64_t discovery_out{}, discovery_in{};  ///< Bytes of discovery and liveliness traffic.

@@ -9,6 +9,7 @@
 /// the real wire.
 namespace adit::wire {
 
+/// Quality of service of a topic.
 struct Qos {
   bool reliable{};         ///< Lost samples are repaired.
   bool transient_local{};  ///< Late joiners receive the history.

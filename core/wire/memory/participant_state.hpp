@@ -36,6 +36,7 @@ struct TopicOf {
   std::uint32_t max_bytes{};
 };
 
+/// A written sample.
 struct Sample {
   std::uint64_t sequence{};
   std::string key{};
@@ -52,6 +53,7 @@ struct Missing {
 
 struct ParticipantState;
 
+/// A writer of the simulated network.
 struct WriterState : std::enable_shared_from_this<WriterState> {
   /// One matched reader.
   struct Proxy {
@@ -97,6 +99,7 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   bool pump_armed{};
 };
 
+/// A reader of the simulated network.
 struct ReaderState : std::enable_shared_from_this<ReaderState> {
   using Box = Mailbox<Payload>;
   /// A sample that waits for earlier ones, or for its own missing frames. Without bytes: it will never
@@ -136,6 +139,7 @@ struct ReaderState : std::enable_shared_from_this<ReaderState> {
   std::map<EndpointId, Proxy> writers{};
 };
 
+/// A participant of the simulated network.
 struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
   struct Peer {
     Duration heard{};

@@ -16,6 +16,7 @@
 
 namespace adit::wire {
 
+/// Parameters of SimulatedNetwork.
 struct SimulatedNetworkParams {
   std::uint64_t seed{1};           ///< Seed of losses and participant ids.
   std::uint32_t radio_domain{77};  ///< This domain passes the radio model; all others are inner networks.
