@@ -28,7 +28,7 @@ constinit const Condition kStickFresh{"StickFresh", Reason::joystick_stale,
                                       [](const Facts& f) { return f.stick_fresh; }, Scope::on_entry};
 constinit const Condition kStickCentred{"StickCentred", Reason::stick_not_centred,
                                         [](const Facts& f) { return f.stick_centred; }, Scope::on_entry};
-constinit const Condition kStickPresent{"StickPresent", Reason::joystick_stale,
+constinit const Condition kStickPresent{"StickKept", Reason::joystick_stale,
                                         [](const Facts& f) { return f.stick_present; }, Scope::terminal};
 constinit const Condition kGoalKnown{"GoalKnown", Reason::goal_missing,
                                      [](const Facts& f) { return f.goal_known; }, Scope::terminal};
@@ -55,7 +55,7 @@ std::vector<ModeRow> standard_modes() {
        .accepts = Accepts::stick,
        .on_handover = OnHandover::falls_to_hold,
        // When the mode is requested without a stick, the first condition that fails is reported: StickFresh.
-       // StickPresent holds longer, so that the mode survives a short loss of the stick, with zero velocity.
+       // StickKept holds longer, so that the mode survives a short loss of the stick, with zero velocity.
        .conditions = {kNotStopped, kDriverAlive, kStickFresh, kStickCentred, kStickPresent},
        .make = ManualMode::make,
        .output_lifetime = Stick::kFresh},

@@ -90,14 +90,14 @@ TEST(TreeCheck, ConditionThatDoesNotCountIsExplained) {
                                 ": Run mode=\"manual\" lacks the condition NotStopped: the one in line " +
                                 line_of(xml, "<NotStopped/>") +
                                 " does not count, it is under Inverter; use ReactiveSequence");
-  EXPECT_THAT(complaint(changed("<StickPresent/>", "<ForceSuccess><StickPresent/></ForceSuccess>")),
+  EXPECT_THAT(complaint(changed("<StickKept/>", "<ForceSuccess><StickKept/></ForceSuccess>")),
               HasSubstr("it is under ForceSuccess"));
-  EXPECT_THAT(complaint(changed("<StickPresent/>", "<StickPresent _skipIf=\"true\"/>")),
-              HasSubstr("_skipIf, _successIf or _while may pass over StickPresent"));
-  EXPECT_THAT(complaint(changed("<StickPresent/>",
-                                "<ReactiveFallback><StickPresent/><AlwaysSuccess/></ReactiveFallback>")),
+  EXPECT_THAT(complaint(changed("<StickKept/>", "<StickKept _skipIf=\"true\"/>")),
+              HasSubstr("_skipIf, _successIf or _while may pass over StickKept"));
+  EXPECT_THAT(complaint(changed("<StickKept/>",
+                                "<ReactiveFallback><StickKept/><AlwaysSuccess/></ReactiveFallback>")),
               HasSubstr("ReactiveFallback does without it"));
-  EXPECT_THAT(complaint(changed("<StickPresent/>", "<Sequence><StickPresent/></Sequence>")),
+  EXPECT_THAT(complaint(changed("<StickKept/>", "<Sequence><StickKept/></Sequence>")),
               HasSubstr("it is under Sequence"));
 }
 
