@@ -9,7 +9,7 @@
 #include <mutex>
 #include <thread>
 
-#include "basestation/host/snapshot.hpp"
+#include "basestation/station/station.hpp"
 #include "bench/alerts/alert_count.hpp"
 #include "sim/rehearsal/rehearsal.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
