@@ -96,11 +96,14 @@ int run_request(const Options& options, const command::Request& request, const s
   if (request.verb == verb("down")) {
     const auto path = client::socket_path(options.name);
     if (!path) return fail(options, kExitRefused, path.error());
-    if (!client::LineSocket::connect(*path)) {
+    auto running = client::LineSocket::connect(*path);
+    if (!running) {
       std::printf("%s", options.json ? "{\"command\":\"down\",\"exit\":0,\"ok\":true,\"results\":[]}\n"
                                      : ("no station of " + options.name + " is running\n").c_str());
       return kExitDone;
     }
+    client::Connection client(std::move(*running), "shell");
+    return run_line(client, options, line);
   }
   auto socket = connect(options);
   if (!socket) return fail(options, exit_without_station(socket.error()), socket.error());
