@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "basestation/model/json.hpp"
 #include "basestation/model/json_fields.hpp"
 #include "core/command/words.hpp"
 

@@ -48,14 +48,6 @@ json columns_json(const std::vector<VoxelRun>& runs) {
 
 std::string line_of(const json& value) { return value.dump(-1, ' ', true, json::error_handler_t::replace); }
 
-template json json_of(const Counts& counts);
-template json json_of(const Robot& robot);
-template json json_of(const Notice& notice);
-template json json_of(const StationSummary& station);
-template json json_of(const AgentRate& rate);
-template json json_of(const World& world);
-template json json_of(const CommandEvent& event);
-
 json json_of(const MapUpdate& update) {
   json tiles = json::array();
   for (const MapTile& tile : update.tiles)

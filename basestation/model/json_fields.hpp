@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "basestation/model/json.hpp"
 #include "basestation/model/json_reader.hpp"
 #include "basestation/model/outcome.hpp"
 #include "basestation/model/world.hpp"
@@ -10,11 +9,6 @@ namespace adit::station {
 
 template <class Io, class T>
 using Of = typename Io::template Value<T>;
-
-template <class T>
-nlohmann::json json_of(const T& value) {
-  return JsonWriter::of(value);
-}
 
 template <class Io>
 void fields(Io& io, Of<Io, Epoch>& epoch) {

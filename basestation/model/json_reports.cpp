@@ -4,6 +4,7 @@
 
 #include "basestation/model/found.hpp"
 #include "basestation/model/health.hpp"
+#include "basestation/model/json.hpp"
 #include "basestation/model/json_fields.hpp"
 #include "basestation/model/network.hpp"
 #include "basestation/model/outcome.hpp"
@@ -142,6 +143,17 @@ Result<T> report_of(const CommandOutcome& outcome, const char* what) {
 
 }  // namespace
 
+template <class T>
+json json_of(const T& value) {
+  return JsonWriter::of(value);
+}
+template json json_of(const Counts& counts);
+template json json_of(const Robot& robot);
+template json json_of(const Notice& notice);
+template json json_of(const StationSummary& station);
+template json json_of(const AgentRate& rate);
+template json json_of(const World& world);
+template json json_of(const CommandEvent& event);
 template json json_of(const HealthReport& report);
 template json json_of(const NetworkReport& report);
 template json json_of(const FoundReport& report);
