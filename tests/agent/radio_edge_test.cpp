@@ -77,11 +77,11 @@ TEST_F(RadioEdgeTest, OfARevokedCommandComponentNeitherWritesNorReads) {
   const auto reader = wire::make_reader(*station, wire::topics::kRobotState, *strand,
                                         [&](const radio::RobotState&, const wire::SampleInfo&) { ++states; });
   run(3s);
-  edge->send_state({}, 1);
+  edge->send_state({.stamp = 1});
   send_stick();
   run(100ms);
   generation->revoke();
-  edge->send_state({}, 2);
+  edge->send_state({.stamp = 2});
   send_stick();
   run(100ms);
   EXPECT_EQ(states, 1);

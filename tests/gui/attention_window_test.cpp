@@ -13,7 +13,7 @@ class AttentionWindow : public Window {
  protected:
   /// The alerts of the ten robots that a fresh window finds.
   void say(const std::string& robot, const std::string& code, const std::string& text) {
-    control.add_notice({.id = ++id, .robot = robot, .code = code, .text = text, .mine = true});
+    control.add_notice(my_notice(++id, robot, code, text));
     show(ten_robots());
     settle();
   }
@@ -113,11 +113,8 @@ TEST_F(AttentionWindow, AWindowThatIsOpenedLaterShowsWhatHappenedBefore) {
 
 TEST_F(AttentionWindow, TenThousandNotificationsStayBounded) {
   for (int i = 0; i < 10'000; ++i)
-    control.add_notice({.id = ++id,
-                        .robot = "x" + std::to_string(i),
-                        .code = "battery_low",
-                        .text = std::string(200, 'w') + "\n<b>line</b>",
-                        .mine = true});
+    control.add_notice(
+        my_notice(++id, "x" + std::to_string(i), "battery_low", std::string(200, 'w') + "\n<b>line</b>"));
   show(ten_robots());
   settle();
   EXPECT_LE(control.attention()->count(), static_cast<int>(station::AlertQueue::kMaxAlerts) + 10);

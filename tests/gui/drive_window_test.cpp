@@ -210,10 +210,7 @@ TEST_F(DriveWindow, TheControllerVibratesForUrgentAlertsAndForObstaclesOfTheDriv
   begin();
   const auto notice = [&](const char* robot, const char* code) {
     rumble = 0.0;
-    station::Notice heard{{.code = code, .text = code, .robot = robot}};
-    heard.id = ++notices;
-    heard.mine = true;
-    control.add_notice(heard);
+    control.add_notice(my_notice(++notices, robot, code, code));
   };
   notice("r4", "arrived");
   notice("r4", "obstacle_near");

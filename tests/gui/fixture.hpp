@@ -27,6 +27,12 @@ inline station::Robot robot(const std::string& name, float x, float y) {
   return out;
 }
 
+/// A notice that concerns the operator.
+inline station::Notice my_notice(std::uint64_t id, const std::string& robot, const std::string& code,
+                                 const std::string& text) {
+  return {{.code = code, .text = text, .robot = robot}, id, 0.0, true};
+}
+
 inline station::Notice blocked_notice() {
   return {{.severity = contract::Severity::warning,
            .code = "blocked",

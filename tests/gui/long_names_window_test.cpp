@@ -38,7 +38,7 @@ class LongNames : public Window {
       control.select(QString::fromStdString(name(numbers[i])), i > 0);
   }
   void say(int robot, const std::string& code, const std::string& text) {
-    control.add_notice({.id = ++id, .robot = name(robot), .code = code, .text = text, .mine = true});
+    control.add_notice(my_notice(++id, name(robot), code, text));
     show(world);
   }
   /// Fails for every such text that is shown and cut. Returns how many are shown.

@@ -50,11 +50,8 @@ class Soak : public TabsTest {
     const char* codes[] = {"blocked",          "lost", "back", "arrived", "found",
                            "component_failed", "idle", "asked"};
     if (step % 6 == 0)
-      control.add_notice({.id = static_cast<std::uint64_t>(step) + 1,
-                          .robot = name,
-                          .code = codes[step / 6 % 8],
-                          .text = "notification " + std::to_string(step),
-                          .mine = true});
+      control.add_notice(my_notice(static_cast<std::uint64_t>(step) + 1, name, codes[step / 6 % 8],
+                                   "notification " + std::to_string(step)));
     if (step % 10 == 0)
       control.add_command({.ended = true, .line = "goto " + name + " " + std::to_string(step)});
     if (step % 40 == 0) {

@@ -17,7 +17,11 @@ using testing::IsEmpty;
 
 TEST(Tables, AMatrixHasAPlaceForEachComponentOfAnyRobot) {
   station::World world;
-  world.robots = {{.name = "r1", .mine = true}, {.name = "r2", .lost = true}};
+  world.robots.resize(2);
+  world.robots[0].name = "r1";
+  world.robots[0].mine = true;
+  world.robots[1].name = "r2";
+  world.robots[1].lost = true;
   station::HealthReport report;
   report.robots = {{.robot = "r1", .components = {{.name = "planner", .state = PartState::up}}},
                    {.robot = "r2", .components = {{.name = "map", .state = PartState::hung, .hung = 1}}}};

@@ -83,7 +83,7 @@ class TaskWindow : public Window {
     return !sink.lines.empty() && sink.lines.back().starts_with(text);
   }
   void say(const std::string& robot, const std::string& code, const std::string& text) {
-    control.add_notice({.id = ++notice_, .robot = robot, .code = code, .text = text, .mine = true});
+    control.add_notice(my_notice(++notice_, robot, code, text));
     show(control.world());
   }
   /// The row of that robot among what needs the operator, as its item has it in its name.

@@ -319,7 +319,7 @@ TEST_F(Window, TextsByRadioAreNeverMarkup) {
   world.robots = {robot("<b>x</b>", 0, 0)};
   world.robots[0].troubles = {"<img src='file:///etc/passwd'>"};
   show(world);
-  control.add_notice({.robot = "<b>x</b>", .code = "found", .text = "<h1>hello</h1>"});
+  control.add_notice({{.code = "found", .text = "<h1>hello</h1>", .robot = "<b>x</b>"}});
   settle();
   EXPECT_EQ(text("cardName"), "<b>x</b>");
   int texts = 0;

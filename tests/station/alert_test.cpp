@@ -67,8 +67,12 @@ TEST(AlertTable, HasARowForEachCodeThatAProgramSends) {
 class AlertQueueTest : public testing::Test {
  protected:
   AlertQueueTest() {
-    for (int i = 1; i <= 5; ++i)
-      world_.robots.push_back({.name = "r" + std::to_string(i), .mine = true, .mode = "waypoint"});
+    for (int i = 1; i <= 5; ++i) {
+      Robot& robot = world_.robots.emplace_back();
+      robot.name = "r" + std::to_string(i);
+      robot.mine = true;
+      robot.mode = "waypoint";
+    }
   }
   Robot& r(int number) { return world_.robots[static_cast<std::size_t>(number) - 1]; }
   Priority say(const std::string& robot, const std::string& code, bool mine = true) {

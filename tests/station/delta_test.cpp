@@ -35,7 +35,9 @@ class Fiction {
   bool now_and_then(double share) { return random_.uniform() < share; }
   void join() {
     const std::string name = "r" + std::to_string(++robots_);
-    world_.robots.push_back({.name = name, .mode = "hold"});
+    Robot& robot = world_.robots.emplace_back();
+    robot.name = name;
+    robot.mode = "hold";
     std::ranges::sort(world_.robots, NaturalOrder{}, &Robot::name);
     world_.traffic[name] = {1.0, 2.0, 0.0};
   }
@@ -125,7 +127,13 @@ TEST(Delta, LeadsToTheSameWorldWhicheverOnesAreLeftOut) {
 class DeltaTest : public testing::Test {
  protected:
   DeltaTest() {
-    before_.robots = {{.name = "r1", .age = 0.2, .located = true, .mode = "hold"}, {.name = "r2"}};
+    before_.robots.resize(2);
+    Robot& robot = before_.robots[0];
+    robot.name = "r1";
+    robot.age = 0.2;
+    robot.located = true;
+    robot.mode = "hold";
+    before_.robots[1].name = "r2";
   }
   Delta after(const World& now) { return difference(encoded(before_), encoded(now)); }
   World before_{.at = 10.0};
@@ -159,10 +167,10 @@ TEST_F(DeltaTest, MotionIsLessUrgentThanWhatAnOperatorActsOn) {
 
 TEST_F(DeltaTest, RobotsAreInNaturalOrder) {
   WorldBuilder builder;
-  before_.robots.push_back({.name = "r10"});
+  before_.robots.emplace_back().name = "r10";
   ASSERT_TRUE(builder.start(json_of(before_)));
   World now = before_;
-  now.robots.push_back({.name = "r3"});
+  now.robots.emplace_back().name = "r3";
   ASSERT_TRUE(builder.apply(after(now).json));
   std::vector<std::string> names;
   for (const Robot& robot : builder.world().robots) names.push_back(robot.name);

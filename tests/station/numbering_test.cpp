@@ -32,7 +32,8 @@ TEST(Numbering, OthersHaveTheSmallestFreeNumbersInTheOrderOfTheirNames) {
 }
 
 TEST(Numbering, ANewlyHeardRobotChangesNoNumberOfAnR) {
-  const World world{.robots = {{.name = "amber"}, {.name = "r1"}, {.name = "r2"}, {.name = "r10"}}};
+  World world;
+  for (const char* name : {"amber", "r1", "r2", "r10"}) world.robots.emplace_back().name = name;
   ASSERT_NE(robot_with_number(world, 2), nullptr);
   EXPECT_EQ(robot_with_number(world, 2)->name, "r2");
   EXPECT_EQ(robot_with_number(world, 3)->name, "amber");

@@ -106,8 +106,12 @@ TEST(Render, ARobotHasTheNumberOfItsName) {
 }
 
 TEST(Render, ARobotThatMovesIsNotReady) {
-  World world{
-      .robots = {{.name = "r1", .located = true, .vx = 1.0F, .mine = true, .mode = "smart_joystick"}}};
+  World world;
+  Robot& robot = world.robots.emplace_back();
+  robot.name = "r1";
+  robot.located = robot.mine = true;
+  robot.vx = 1.0F;
+  robot.mode = "smart_joystick";
   EXPECT_THAT(text(render(world, {.selected = "r1"}, 24, 80, false)), HasSubstr("driven by hand"));
   world.robots[0].vx = 0.0F;
   world.robots[0].mode = "hold";
