@@ -186,7 +186,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (routes_it) watch->watch(router, {.name = "router"});
   watch->watch(sensors, {.name = "sensors"});
   if (maps_it) watch->watch(map, {.name = "map"});
-  if (params.disk) watch->note({.name = "store"});
+  if (params.disk) watch->note({.name = "store", .state = PartState::up, .healthy = true, .automatic = true});
   return e.radio->listen(
       {e.directory, e.namesakes,
        [with_command](const std::function<void(CommandInterface&)>& use) {

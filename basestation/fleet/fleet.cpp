@@ -2,7 +2,6 @@
 #include "basestation/fleet/fleet.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "adit/authority.h"
 #include "adit/discovery.h"
@@ -22,7 +21,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t kNameLimit = 32;
 constexpr Duration kForgetAfter = 60s;
 constexpr Duration kOldestNotice = 240h;  // Maximum age that a robot may claim.
 
@@ -172,8 +170,7 @@ void Fleet::hear(const radio::Route& sample, const wire::SampleInfo& info) {
 
 void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& info) {
   const auto status = contract::decode(sample);
-  if (!status) return (void)++ignored_;
-  RobotView* robot = touch(status->robot, info);
+  RobotView* robot = touch(status, info);
   if (!robot) return;
   // An acknowledgement can be newer than a status that arrives later.
   if (robot->owned && robot->epoch.start == status->epoch.start &&

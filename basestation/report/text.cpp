@@ -186,7 +186,7 @@ std::string net_text(const NetworkReport& report, const StationParams& params) {
     // On a full link the report period is 8 s.
     const bool silent = traffic.age > 4 * seconds(Fleet::kLostAfter);
     std::string first = traffic.agent + (silent ? " (silent)" : "");
-    for (const TopicRate& row : traffic.topics) {
+    for (const TopicTraffic& row : traffic.topics) {
       rows.push_back({first, row.topic, fixed(row.bytes_out, 0), fixed(row.samples_out, 1),
                       fixed(row.bytes_in, 0), fixed(row.samples_in, 1), std::to_string(row.dropped)});
       first.clear();

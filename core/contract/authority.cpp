@@ -23,7 +23,6 @@ radio::AuthorityStatus encode(const AuthorityStatus& status) {
     latch.station_id(stopper.id);
     out.stops().push_back(latch);
   }
-  out.seq(status.seq);
   return out;
 }
 
@@ -32,8 +31,7 @@ std::optional<AuthorityStatus> decode(const radio::AuthorityStatus& sample) {
   AuthorityStatus out{.robot = sample.robot(),
                       .epoch = decode(sample.epoch()),
                       .locked = sample.locked(),
-                      .lease_left = finite(sample.lock_lease_left()) ? sample.lock_lease_left() : -1.0F,
-                      .seq = sample.seq()};
+                      .lease_left = finite(sample.lock_lease_left()) ? sample.lock_lease_left() : -1.0F};
   if (!sample.holder().empty()) out.holder = Party{cleaned_name(sample.holder()), sample.holder_id()};
   for (const radio::Stopper& latch : sample.stops()) {
     if (out.stops.size() == AuthorityStatus::kMaxStops) break;

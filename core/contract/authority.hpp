@@ -29,7 +29,6 @@ struct AuthorityStatus {
   bool locked{};
   float lease_left{-1.0F};     ///< Time until the lock expires, s; negative: no lease runs.
   std::vector<Party> stops{};  ///< One latch per stopper, at most kMaxStops.
-  std::uint64_t seq{};         ///< Rises with each message of the robot.
   bool operator==(const AuthorityStatus&) const = default;
 };
 

@@ -130,7 +130,8 @@ radio::RobotState encode(const RobotState& state) {
 
 std::optional<RobotState> decode(const radio::RobotState& sample) {
   if (!valid_name(sample.robot())) return std::nullopt;
-  const bool known = sample.battery() >= 0.0F && sample.battery() <= 1.0F;  // False for NaN, too.
+  // Drivers overshoot a full battery. False for NaN, too.
+  const bool known = sample.battery() >= 0.0F && sample.battery() <= 1.05F;
   return RobotState{.robot = sample.robot(),
                     .stamp = sample.stamp(),
                     .x = sample.x(),
@@ -140,7 +141,7 @@ std::optional<RobotState> decode(const radio::RobotState& sample) {
                     .vx = sample.vx(),
                     .vy = sample.vy(),
                     .wz = sample.wz(),
-                    .battery = known ? sample.battery() : -1.0F,
+                    .battery = known ? std::min(sample.battery(), 1.0F) : -1.0F,
                     .sigma = sample.sigma() * (1.0 / RobotState::kSigmaPerMetre),
                     .roll = angle_of(sample.tilt()[0]),
                     .pitch = angle_of(sample.tilt()[1]),

@@ -21,7 +21,7 @@ namespace {
 
 AuthorityStatus any_status(RandomSamples& random) {
   AuthorityStatus out{.robot = random.name(), .lease_left = static_cast<float>(random.number(100.0))};
-  random.any(out.epoch.start, out.epoch.counter, out.locked, out.seq);
+  random.any(out.epoch.start, out.epoch.counter, out.locked);
   const auto party = [&random] {
     Party made{random.name(), {}};
     random.any(made.id);

@@ -91,9 +91,9 @@ Cell goal_cell(const Robot& robot, std::size_t width) {
   if (phase == GoalState::none) return {padded("-", width), kDim};
   const std::string where = fixed(robot.goal[0], 1) + "," + fixed(robot.goal[1], 1);
   const char* colour = phase == GoalState::blocked ? kRed : phase == GoalState::reached ? kGreen : "";
-  const std::string shown = phase == GoalState::active    ? "to"
-                            : phase == GoalState::reached ? "at"
-                                                          : to_string(phase);
+  const std::string shown(phase == GoalState::active    ? "to"
+                          : phase == GoalState::reached ? "at"
+                                                        : to_string(phase));
   return {padded(shown + " " + where, width), colour};
 }
 

@@ -14,6 +14,7 @@ namespace adit::gui {
 namespace {
 
 using command::joined;
+using station::exploration_text;
 using station::fixed;
 using station::GoalState;
 using station::kUnknownPlace;
