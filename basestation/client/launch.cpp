@@ -57,8 +57,7 @@ std::vector<std::string> arguments(const StationOptions& options) {
   ::_exit(127);
 }
 
-/// Asks the station for its description. Nothing if it does not answer immediately, which the command itself
-/// then reports.
+/// Asks the station for its description. Nothing if it does not answer immediately.
 std::optional<StationOptions> ask_hello(const std::string& path) {
   auto socket = LineSocket::connect(path);
   if (!socket) return std::nullopt;
@@ -85,6 +84,11 @@ Result<std::string> check_running(const std::string& path, const StationOptions&
                     !options.peers.empty() || !options.at.empty() || !options.record.empty();
   if (!asks) return std::string();
   const std::optional<StationOptions> running = ask_hello(path);
+  if (!running && (options.domain_given || !options.interfaces.empty()))
+    return Error{
+        Reason::no_answer,
+        "the station of " + options.name +
+            " does not say on which network it runs; leave --domain and --interface out, or try again"};
   if (!running) return std::string();
   const std::string station = "the station of " + options.name + " runs ";
   const auto misfit = [&](const std::string& where, const char* option) {

@@ -21,7 +21,8 @@ temporary="${TMPDIR:-/tmp}" scratch="${TMPDIR:-/tmp}/adit.$$.$RANDOM"
 mkdir -m 700 "$scratch" "$scratch"/{home,run,state,cache,tmp} || exit 1
 export HOME="$scratch/home" XDG_RUNTIME_DIR="$scratch/run" XDG_STATE_HOME="$scratch/state" XDG_CACHE_HOME="$scratch/cache"
 
-# `prepared` shows that the exit status is the test's, ADIT_OWN_NETWORK the test that it is alone in its network. All other processes end with this shell, process 1 of their own.
+# `prepared` shows that the exit status is the test's, ADIT_OWN_NETWORK the test that it is alone in its network. All
+# other processes end with this shell, process 1 of their own.
 # shellcheck disable=SC2016
 TMPDIR="$scratch/tmp" "${separate[@]}" \
   sh -c 'ip link set lo up && : > "$0/prepared" && ADIT_OWN_NETWORK=1 "$@"; exit $?' "$scratch" "$@"

@@ -24,6 +24,8 @@ using namespace input;
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
+constexpr auto kDrawPeriod = 100ms;
+
 class Dashboard {
  public:
   Dashboard(client::Connection& client, Terminal& terminal) : client_(client), terminal_(terminal) {
@@ -64,8 +66,12 @@ class Dashboard {
         state_.driving_text = number(v[0]) + " m/s " + number(v[2]) + " rad/s";
         dirty_ = true;
       }
-      if (dirty_) draw();
-      if (!client_.wait(state_.driving ? 50 : 200, STDIN_FILENO)) return false;
+      // A page may take long on a slow connection, and the keys wait for it.
+      if (dirty_ && now >= next_draw_) {
+        draw();
+        next_draw_ = now + kDrawPeriod;
+      }
+      if (!client_.wait(state_.driving ? 50 : dirty_ ? 100 : 200, STDIN_FILENO)) return false;
     }
     if (state_.driving) client_.cancel(drive_);
     return true;
@@ -210,7 +216,7 @@ class Dashboard {
   std::deque<std::pair<Clock::time_point, std::string>> others_{};
   std::int64_t drive_{};
   Clock::time_point heard_{Clock::now()};
-  Clock::time_point next_stick_{};
+  Clock::time_point next_stick_{}, next_draw_{};
   bool dirty_{true};
   bool redraw_{true};
   bool leaving_{false};
