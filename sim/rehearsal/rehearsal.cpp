@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "basestation/map/chunk_store.hpp"
+#include "basestation/map/ground_area.hpp"
 #include "core/record/frame_recorder.hpp"
 #include "core/wire/topics.hpp"
 #include "sim/rehearsal/expectations.hpp"
@@ -274,7 +275,8 @@ class Run {
       if (const auto found = witness_.topics().find(topic); found != witness_.topics().end())
         out.bytes += found->second.bytes;
     for (const auto& [id, station] : stations_)
-      if (const station::ChunkStore* map = station->chunks()) out.m2 = std::max(out.m2, map->area());
+      if (const station::ChunkStore* map = station->chunks())
+        out.m2 = std::max(out.m2, station::ground_area(*map, Time{}).m2);
     return out;
   }
 
