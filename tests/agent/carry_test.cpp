@@ -18,14 +18,14 @@ struct Base {
   explicit Base(Executor& home) : strand(home) { restart(); }
 
   void restart() {
-    pieces.emplace([this] { return strand.now(); });
-    digests = {};
-    replica.emplace(++starts, disk, strand, [](const std::string&) {});
-    (void)replica->load();
-    pieces->otherwise(
+    pieces.emplace(
+        [this] { return strand.now(); },
         [this](const station::PieceReader::Piece& piece, const station::PieceReader::Stored& stored) {
           return replica->take(piece.robot, piece.kind, piece.waiting, piece.data, stored);
         });
+    digests = {};
+    replica.emplace(++starts, disk, strand, [](const std::string&) {});
+    (void)replica->load();
   }
   std::map<perception::SubmapKey, std::map<perception::BlockIndex, std::pair<std::uint64_t, std::uint64_t>>>
   map_of(const std::string& robot) const {

@@ -18,13 +18,13 @@ struct DiskStation {
   DiskStation(Executor& home, transfer::PeerId peer) : strand(home), id(peer) { restart(); }
 
   void restart() {
-    pieces.emplace([this] { return strand.now(); });
-    replica.emplace(++starts, disk, strand, [](const std::string&) {});
-    (void)replica->load();
-    pieces->otherwise(
+    pieces.emplace(
+        [this] { return strand.now(); },
         [this](const station::PieceReader::Piece& piece, const station::PieceReader::Stored& stored) {
           return replica->take(piece.robot, piece.kind, piece.waiting, piece.data, stored);
         });
+    replica.emplace(++starts, disk, strand, [](const std::string&) {});
+    (void)replica->load();
   }
   perception::VoxelImage image() const {
     return station::merged(station::parts_of(replica->chunks()), nullptr, 0.2);

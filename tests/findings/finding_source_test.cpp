@@ -187,7 +187,7 @@ TEST_F(FindingSourceTest, DropsTheLeastImportantFindingWhenFullAndReportsIt) {
   EXPECT_EQ(full, 1) << "reported once";
   ops[0].heard = true;
   run(6s);
-  EXPECT_EQ(ops[0].desk->robots().at("r1").kept, 8u);
+  EXPECT_EQ(ops[0].desk->robots().at("r1").stored, 8u);
   EXPECT_EQ(ops[0].desk->robots().at("r1").overflowed, 3u);
 }
 

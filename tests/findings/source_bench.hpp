@@ -61,21 +61,20 @@ class FindingSourceTest : public testing::Test {
   void start(Operator& op, std::size_t most = 1000) {
     ++op.start;
     op.desk.reset();
-    op.pieces = std::make_unique<station::PieceReader>([this] { return strand->now(); });
+    op.pieces = std::make_unique<station::PieceReader>(
+        [this] { return strand->now(); },
+        [&op](const station::PieceReader::Piece& piece, station::PieceReader::Stored stored) {
+          if (piece.kind == static_cast<std::uint8_t>(transfer::Kind::findings))
+            return op.desk->hear(piece.robot, piece.data, std::move(stored));
+          stored();
+          return Result<void>{};
+        });
     op.desk = std::make_unique<station::FindingDesk>(
         station::DeskParams{most}, op.disk, *strand,
         station::FindingDesk::Outputs{
             [](const findings::Finding&) {},
             [&op](const std::string& code, const std::string&) { op.trouble.push_back(code); }});
     (void)op.desk->load();
-    op.pieces->add(transfer::Kind::findings,
-                   [&op](const station::PieceReader::Piece& piece, station::PieceReader::Stored stored) {
-                     return op.desk->hear(piece.robot, piece.data, std::move(stored));
-                   });
-    op.pieces->otherwise([](const station::PieceReader::Piece&, const station::PieceReader::Stored& stored) {
-      stored();
-      return Result<void>{};
-    });
   }
   void send() {
     for (const transfer::Piece& piece : sender->due(strand->now(), link)) {

@@ -100,7 +100,12 @@ class ContentCrowd : public testing::Test {
     }
   }
   void restart() {
-    reader.emplace([this] { return strand->now(); });
+    reader.emplace([this] { return strand->now(); },
+                   [this](const PieceReader::Piece& piece, const PieceReader::Stored& stored) {
+                     if (piece.kind == static_cast<std::uint8_t>(Kind::findings))
+                       return desk->hear(piece.robot, piece.data, stored);
+                     return replica->take(piece.robot, piece.kind, piece.waiting, piece.data, stored);
+                   });
     replica.emplace(++starts, disk, *strand, [this](const std::string& text) { troubles.push_back(text); });
     lost = replica->load();
     desk.emplace(DeskParams{}, finding_disk, *strand,
@@ -109,12 +114,6 @@ class ContentCrowd : public testing::Test {
                                         if (code != "store_works") troubles.push_back(code);
                                       }});
     (void)desk->load();
-    reader->add(Kind::findings, [this](const PieceReader::Piece& piece, PieceReader::Stored stored) {
-      return desk->hear(piece.robot, piece.data, std::move(stored));
-    });
-    reader->otherwise([this](const PieceReader::Piece& piece, const PieceReader::Stored& stored) {
-      return replica->take(piece.robot, piece.kind, piece.waiting, piece.data, stored);
-    });
   }
   void arrive(const std::string& robot, std::uint32_t session, std::uint32_t id, const Content& content) {
     reader->take({robot, session, id, content.kind, 0, content.data});
