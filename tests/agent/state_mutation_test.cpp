@@ -8,6 +8,7 @@
 #include "core/findings/finding.hpp"
 #include "core/store/sections.hpp"
 #include "core/time/random.hpp"
+#include "robot_agent/state/snapshot.hpp"
 #include "tests/findings/some.hpp"
 #include "tests/wire/largest_allocation.hpp"
 

@@ -92,7 +92,7 @@ TEST_F(ServerTest, AClientReadsHowManyNoticesItMissed) {
   ASSERT_FALSE(reader.next("hello").is_null());
   static constexpr int sent = 20000;
   on_strand([this] {
-    for (int i = 0; i < sent; ++i) server_->notify({.text = std::string(200, 'x')});
+    for (int i = 0; i < sent; ++i) server_->notify({{.text = std::string(200, 'x')}});
   });
   reader.say({{"hello", true}});
   int seen = 0;

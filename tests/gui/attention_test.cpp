@@ -25,7 +25,7 @@ class AttentionTest : public testing::Test {
   }
   station::Robot& r(int number) { return world_.robots[static_cast<std::size_t>(number) - 1]; }
   void say(const std::string& robot, const std::string& code, const std::string& text) {
-    queue_.add({.robot = robot, .code = code, .text = text, .mine = true}, world_, now_);
+    queue_.add({{.code = code, .text = text, .robot = robot}, 0, 0.0, true}, world_, now_);
   }
   std::vector<Need> needs() {
     queue_.update(world_, now_);
