@@ -182,7 +182,7 @@ TEST_F(RightOfWayTest, AsksOnlyOneThatMakesWayAndIsOnItsRoute) {
   ASSERT_TRUE(said(way).ask);
   EXPECT_THAT(said(way).ask->to, ElementsAre("r3"));
   EXPECT_EQ(said(way).ask->root, "r2");
-  EXPECT_NEAR(way.speed_limit(), 0.5 * (6.0 - 0.6 - RightOfWay::kDistance), 1e-9);
+  EXPECT_NEAR(way.speed_limit(), 0.5 * (6.0 - 0.6 - RightOfWay::kDistance), 1e-6);  // Sizes are floats.
   // Until it has passed the place where the other one was, and the one to which it drives.
   before.pose.x = 8.0;
   before.answer = YieldAnswer{"r2", true, Reason::none, {8.0, 1.5}};
