@@ -182,7 +182,7 @@ qmllint_of_qt6() {
   local tool
   for tool in /usr/lib/qt6/bin/qmllint qmllint6 qmllint; do
     # Version 5 has the name, too, and other options.
-    if "$tool" --help 2> /dev/null | grep -q -- '--unqualified'; then echo "$tool"; return; fi
+    if [[ "$("$tool" --help 2> /dev/null)" == *--unqualified* ]]; then echo "$tool"; return; fi
   done
 }
 check_qml() {

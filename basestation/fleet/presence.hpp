@@ -5,8 +5,8 @@
 
 #include "basestation/fleet/fleet.hpp"
 #include "basestation/fleet/station_params.hpp"
+#include "core/contract/traffic_meter.hpp"
 #include "core/time/random.hpp"
-#include "core/wire/link/traffic_meter.hpp"
 
 namespace adit::station {
 
@@ -39,7 +39,7 @@ class Presence {
   Fleet& fleet_;
   Random& random_;
   bool up_{true};
-  wire::TrafficMeter meter_{};
+  contract::TrafficMeter meter_{};
   std::uint32_t presence_seq_{};
   std::uint64_t report_seq_{};
   std::unique_ptr<Topics> topics_;

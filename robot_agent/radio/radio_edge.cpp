@@ -14,9 +14,9 @@
 #include "adit/team.h"
 #include "core/contract/bulk.hpp"
 #include "core/contract/link.hpp"
+#include "core/contract/traffic_meter.hpp"
 #include "core/wire/component_io.hpp"
 #include "core/wire/link/peer_meter.hpp"
-#include "core/wire/link/traffic_meter.hpp"
 #include "core/wire/topics.hpp"
 #include "robot_agent/radio/convert.hpp"
 
@@ -32,7 +32,7 @@ struct RadioEdge::Endpoints {
   std::string robot;
   wire::Participant& wire{io.wire};
   Executor& strand{io.strand};
-  wire::TrafficMeter meter{1s};
+  contract::TrafficMeter meter{1s};
   std::uint64_t seq{};
 
   wire::Writer<radio::Acknowledgement> acknowledgement{};

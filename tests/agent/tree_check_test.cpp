@@ -94,9 +94,9 @@ TEST(TreeCheck, ConditionThatDoesNotCountIsExplained) {
               HasSubstr("it is under ForceSuccess"));
   EXPECT_THAT(complaint(changed("<StickKept/>", "<StickKept _skipIf=\"true\"/>")),
               HasSubstr("_skipIf, _successIf or _while may pass over StickKept"));
-  EXPECT_THAT(complaint(changed("<StickKept/>",
-                                "<ReactiveFallback><StickKept/><AlwaysSuccess/></ReactiveFallback>")),
-              HasSubstr("ReactiveFallback does without it"));
+  EXPECT_THAT(
+      complaint(changed("<StickKept/>", "<ReactiveFallback><StickKept/><AlwaysSuccess/></ReactiveFallback>")),
+      HasSubstr("ReactiveFallback does without it"));
   EXPECT_THAT(complaint(changed("<StickKept/>", "<Sequence><StickKept/></Sequence>")),
               HasSubstr("it is under Sequence"));
 }

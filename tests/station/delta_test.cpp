@@ -199,7 +199,7 @@ TEST_F(DeltaTest, WhatDoesNotFitIsRefused) {
 TEST_F(DeltaTest, TheNewestNoticesAreStored) {
   WorldBuilder builder;
   ASSERT_TRUE(builder.start(json_of(before_)));
-  for (std::uint64_t i = 1; i <= 100; ++i) builder.add({.id = i, .age = 1.0});
+  for (std::uint64_t i = 1; i <= 100; ++i) builder.add({{}, i, 1.0});
   EXPECT_EQ(builder.world().notices.size(), 30U);
   EXPECT_EQ(builder.world().notices.back().id, 100U);
   ASSERT_TRUE(builder.apply({{"at", 12.0}}));

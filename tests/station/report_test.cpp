@@ -133,8 +133,8 @@ TEST(Report, StatusShowsTheNewestNoticesOfTheRobot) {
   sample.robot("r1");
   fleet.hear(sample, {.received = Time(1s)});
   EXPECT_THAT(status_text(fleet, *fleet.robot("r1"), Time(1s)), testing::Not(HasSubstr("notices")));
-  for (int n = 1; n <= 7; ++n) fleet.say({.robot = "r1", .text = "event " + std::to_string(n)}, Time(n * 1s));
-  fleet.say({.robot = "r2", .text = "of another robot"}, Time(8s));
+  for (int n = 1; n <= 7; ++n) fleet.say({.text = "event " + std::to_string(n), .robot = "r1"}, Time(n * 1s));
+  fleet.say({.text = "of another robot", .robot = "r2"}, Time(8s));
   const std::string text = status_text(fleet, *fleet.robot("r1"), Time(10s));
   EXPECT_THAT(text, HasSubstr("  notices  3 s ago: event 7\n           4 s ago: event 6\n"));
   EXPECT_THAT(text, HasSubstr("7 s ago: event 3\n"));

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "basestation/model/found.hpp"
+#include "basestation/model/health.hpp"
 #include "basestation/model/json.hpp"
+#include "basestation/model/network.hpp"
 #include "basestation/model/outcome.hpp"
 #include "core/time/random.hpp"
 

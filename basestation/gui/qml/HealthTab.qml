@@ -7,6 +7,7 @@ Item {
     id: tab
     required property Control control
     readonly property TabState state_: control.tabs
+    readonly property var chosen: state_.chosen
 
     Matrix {
         id: grid
@@ -49,8 +50,8 @@ Item {
             width: policy.x - 5 * Theme.mm
             height: 5.5 * Theme.mm
             font.bold: true
-            color: tab.state_.chosen.title === "" ? Theme.dim : Theme.text
-            text: tab.state_.chosen.title === "" ? "tap a component to see why, and to restart it" : tab.state_.chosen.title
+            color: tab.chosen.title === "" ? Theme.dim : Theme.text
+            text: tab.chosen.title === "" ? "tap a component to see why, and to restart it" : tab.chosen.title
         }
         PlainLabel {
             objectName: "healthText"
@@ -60,7 +61,7 @@ Item {
             height: 10 * Theme.mm
             wrapMode: Text.Wrap
             maximumLineCount: 2
-            text: tab.state_.chosen.text
+            text: tab.chosen.text
         }
         HoldButton {
             id: policy
@@ -69,10 +70,10 @@ Item {
             y: 2 * Theme.mm
             width: 46 * Theme.mm
             height: 13 * Theme.mm
-            opacity: tab.state_.chosen.mine ? 1 : 0.35
-            hold: tab.state_.chosen.mine
-            meaning: tab.state_.chosen.title + text
-            text: tab.state_.chosen.title === "" ? "policy" : tab.state_.chosen.automatic ? "auto → manual" : "manual → auto"
+            opacity: tab.chosen.mine ? 1 : 0.35
+            hold: tab.chosen.mine
+            meaning: tab.chosen.title + text
+            text: tab.chosen.title === "" ? "policy" : tab.chosen.automatic ? "auto → manual" : "manual → auto"
             onFired: held => held && tab.state_.changePolicy()
         }
         HoldButton {
@@ -82,9 +83,9 @@ Item {
             y: 2 * Theme.mm
             width: 36 * Theme.mm
             height: 13 * Theme.mm
-            opacity: tab.state_.chosen.mine ? 1 : 0.35
-            hold: tab.state_.chosen.mine
-            meaning: tab.state_.chosen.title
+            opacity: tab.chosen.mine ? 1 : 0.35
+            hold: tab.chosen.mine
+            meaning: tab.chosen.title
             text: "Restart"
             onFired: held => held && tab.state_.restartChosen()
         }

@@ -176,13 +176,13 @@ void ExploreMode::finish() {
 void ExploreMode::store(StoredBehaviour& stored) const {
   if (view_.phase == ExplorationPhase::none) return;
   stored.modes.push_back({"explore", store::Packer{}
-                                       .put(static_cast<std::uint8_t>(view_.phase))
-                                       .put(static_cast<std::uint8_t>(request_.after))
-                                       .flag(complete_)
-                                       .put(static_cast<std::uint16_t>(why_))
-                                       .put(request_.limit)
-                                       .text(request_.area)
-                                       .bytes()});
+                                         .put(static_cast<std::uint8_t>(view_.phase))
+                                         .put(static_cast<std::uint8_t>(request_.after))
+                                         .flag(complete_)
+                                         .put(static_cast<std::uint16_t>(why_))
+                                         .put(request_.limit)
+                                         .text(request_.area)
+                                         .bytes()});
 }
 
 // The map of the router is empty after a restart of the agent: the next scans show that what is around the

@@ -6,7 +6,7 @@
 #include "core/contract/link.hpp"
 #include "core/wire/participant.hpp"
 
-namespace adit::wire {
+namespace adit::contract {
 
 /// Computes an agent's report of its traffic from the counters of its participant.
 class TrafficMeter {
@@ -16,13 +16,13 @@ class TrafficMeter {
 
   /// Returns the rates since the previous reading, all topics, and the state of the sender; without peers and
   /// state rate. The rate of a counter that fell is 0.
-  contract::LinkReport read(const std::string& agent, const WireCounters& counters, const SenderState& sender,
-                            Time now);
+  LinkReport read(const std::string& agent, const wire::WireCounters& counters,
+                  const wire::SenderState& sender, Time now);
 
  private:
   Duration first_;
-  WireCounters last_{};
+  wire::WireCounters last_{};
   std::optional<Time> last_at_{};
 };
 
-}  // namespace adit::wire
+}  // namespace adit::contract

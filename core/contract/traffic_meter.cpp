@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/wire/link/traffic_meter.hpp"
+#include "core/contract/traffic_meter.hpp"
 
 #include <algorithm>
 #include <map>
 
-namespace adit::wire {
+namespace adit::contract {
 namespace {
-
-using contract::LinkReport;
-
-static_assert(LinkReport::kPriorities == kPriorities,
-              "another number of priorities is another version of the contract");
 
 struct TopicSums {
   std::uint64_t samples_out{}, bytes_out{}, samples_in{}, bytes_in{}, dropped{};
 };
 
-std::map<std::string, TopicSums> by_topic(const WireCounters& counters) {
+std::map<std::string, TopicSums> by_topic(const wire::WireCounters& counters) {
   std::map<std::string, TopicSums> sums;
-  for (const TopicCount& row : counters.topics) {
+  for (const wire::TopicCount& row : counters.topics) {
     TopicSums& sum = sums[row.topic];
     sum.samples_out += row.samples_out;
     sum.bytes_out += row.bytes_out;
@@ -35,8 +30,8 @@ std::uint32_t bounded(std::uint64_t count) {
 
 }  // namespace
 
-LinkReport TrafficMeter::read(const std::string& agent, const WireCounters& counters,
-                              const SenderState& sender, Time now) {
+LinkReport TrafficMeter::read(const std::string& agent, const wire::WireCounters& counters,
+                              const wire::SenderState& sender, Time now) {
   const double span = seconds(last_at_ ? now - *last_at_ : first_);
   const auto rate = [span](std::uint64_t is, std::uint64_t was) {
     return span > 0.0 && is >= was ? static_cast<float>(static_cast<double>(is - was) / span) : 0.0F;
@@ -46,7 +41,7 @@ LinkReport TrafficMeter::read(const std::string& agent, const WireCounters& coun
                     .discovery_in = rate(counters.discovery_in, last_.discovery_in),
                     .total_out = rate(counters.total_out, last_.total_out),
                     .total_in = rate(counters.total_in, last_.total_in),
-                    .queue = seconds(sender.waiting(kStatusPriority))};
+                    .queue = seconds(sender.waiting(wire::kStatusPriority))};
   auto before = by_topic(last_);
   for (const auto& [topic, sum] : by_topic(counters)) {
     const TopicSums& was = before[topic];
@@ -55,7 +50,7 @@ LinkReport TrafficMeter::read(const std::string& agent, const WireCounters& coun
                              rate(sum.samples_in, was.samples_in), bounded(sum.dropped)});
   }
   std::uint64_t malformed = 0;
-  for (const TopicCount& row : counters.topics) malformed += row.malformed;
+  for (const wire::TopicCount& row : counters.topics) malformed += row.malformed;
   report.malformed = bounded(malformed);
   if (sender.link != nullptr) {
     report.link = sender.link->name;
@@ -67,4 +62,4 @@ LinkReport TrafficMeter::read(const std::string& agent, const WireCounters& coun
   return report;
 }
 
-}  // namespace adit::wire
+}  // namespace adit::contract

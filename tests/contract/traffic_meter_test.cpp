@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/wire/link/traffic_meter.hpp"
+#include "core/contract/traffic_meter.hpp"
 
 #include <gtest/gtest.h>
 
-namespace adit::wire {
+namespace adit::contract {
 namespace {
+
+using wire::kStatusPriority;
+using wire::LinkProfile;
+using wire::SenderState;
+using wire::WireCounters;
 
 WireCounters counters_of_two_peers() {
   return {.topics = {{.topic = "adit/command", .peer = {1}, .samples_out = 10, .bytes_out = 1000},
@@ -24,7 +29,7 @@ TEST(TrafficMeter, RatesAreDifferencesOverTime) {
   counters.topics[0].bytes_out += 200;
   counters.topics[1].bytes_out += 100;
   counters.discovery_out += 50;
-  const contract::LinkReport report = meter.read("op1", counters, {}, Time(3s));
+  const LinkReport report = meter.read("op1", counters, {}, Time(3s));
   ASSERT_EQ(report.topics.size(), 1U);
   EXPECT_FLOAT_EQ(report.topics[0].bytes_out, 150.0F);
   EXPECT_FLOAT_EQ(report.discovery_out, 25.0F);
@@ -34,7 +39,7 @@ TEST(TrafficMeter, RatesAreDifferencesOverTime) {
 
 TEST(TrafficMeter, TheFirstReadingCoversTheGivenTime) {
   TrafficMeter meter(2s);
-  const contract::LinkReport report = meter.read("r1", counters_of_two_peers(), {}, Time(100s));
+  const LinkReport report = meter.read("r1", counters_of_two_peers(), {}, Time(100s));
   EXPECT_FLOAT_EQ(report.discovery_out, 50.0F);
   EXPECT_FLOAT_EQ(report.topics.at(0).samples_out, 7.5F);
 }
@@ -47,13 +52,13 @@ TEST(TrafficMeter, ACounterThatFellHasNoRate) {
   counters.topics.pop_back();
   counters.topics[0].samples_out += 4;
   counters.discovery_out = 7;
-  const contract::LinkReport fell = meter.read("r1", counters, {}, Time(2s));
+  const LinkReport fell = meter.read("r1", counters, {}, Time(2s));
   EXPECT_EQ(fell.discovery_out, 0.0F);
   EXPECT_EQ(fell.topics.at(0).bytes_out, 0.0F);
   EXPECT_EQ(fell.topics.at(0).samples_out, 0.0F);
   counters.discovery_out += 10;
   counters.topics[0].bytes_out += 30;
-  const contract::LinkReport rises = meter.read("r1", counters, {}, Time(4s));
+  const LinkReport rises = meter.read("r1", counters, {}, Time(4s));
   EXPECT_FLOAT_EQ(rises.discovery_out, 5.0F);
   EXPECT_FLOAT_EQ(rises.topics.at(0).bytes_out, 15.0F);
 }
@@ -67,7 +72,7 @@ TEST(TrafficMeter, TheSenderIsReportedAsItIs) {
   sender.queue[kStatusPriority + 1] = 5s;
   sender.dropped[2] = 9;
   sender.dropped[3] = std::uint64_t{1} << 40;
-  const contract::LinkReport report = TrafficMeter{}.read("r1", {}, sender, Time(1s));
+  const LinkReport report = TrafficMeter{}.read("r1", {}, sender, Time(1s));
   EXPECT_EQ(report.agent, "r1");
   EXPECT_EQ(report.link, "mesh_100k");
   EXPECT_EQ(report.bandwidth, 1e5);
@@ -77,4 +82,4 @@ TEST(TrafficMeter, TheSenderIsReportedAsItIs) {
 }
 
 }  // namespace
-}  // namespace adit::wire
+}  // namespace adit::contract
