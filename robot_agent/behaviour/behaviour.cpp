@@ -21,6 +21,7 @@ Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, M
       decision_{&guard_.admitted(), false, Reason::none},
       running_(decision_.mode),
       interrupted_(decision_.mode) {
+  reported_.mode = std::string(running_->name);
   // Modules may ask for the pose at any time.
   if (!inputs_.pose) inputs_.pose = [] { return std::optional<Pose2>{}; };
   if (!inputs_.stopping) inputs_.stopping = [] { return 0.0; };
