@@ -229,11 +229,12 @@ TEST_F(Cli, ADamagedIdentityIsReportedAndNotReplaced) {
 TEST_F(Cli, TheSocketSurvivesGarbage) {
   run({"up"});
   EXPECT_THAT(talk("garbage\n[1,2]\n{\"id\":\"x\"}\n{\"id\":1}\n", "wrong"), HasSubstr("wrong"));
-  EXPECT_THAT(talk("{\"id\":1,\"stick\":[1,2]}\n", "three numbers"), HasSubstr("three numbers"));
+  EXPECT_THAT(talk("{\"id\":1,\"stick\":[1,2]}\n", "wrong"), HasSubstr("'stick'"));
   EXPECT_THAT(talk("{\"id\":1,\"do\":5}\n{\"cancel\":\"x\"}\n", "wrong"), HasSubstr("wrong"));
   EXPECT_THAT(talk(std::string("\0\xff\xfe{}\n", 6), "wrong"), HasSubstr("wrong"));
   EXPECT_THAT(talk("{\"id\":7,\"teleop\":\"a b\"}\n", "robot's name"), HasSubstr("robot's name"));
-  EXPECT_THAT(talk("{\"id\":8,\"teleop\":\"r1\",\"do\":5}\n", "begun"), HasSubstr("begun"));
+  EXPECT_THAT(talk("{\"id\":8,\"teleop\":\"r1\",\"do\":5}\n", "wrong"), HasSubstr("'do'"));
+  EXPECT_THAT(talk("{\"id\":8,\"teleop\":\"r1\"}\n", "begun"), HasSubstr("begun"));
   talk(std::string(1 << 20, 'x'));  // an endless line
   talk("{\"id\":1,\"do\":\"" + std::string(100000, '[') + "\"}\n");
   talk(std::string(100000, '[') + "\n");
