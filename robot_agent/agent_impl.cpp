@@ -27,6 +27,14 @@ wire::ComponentIo io_of(const ComponentSlot& slot, wire::Participant& wire) {
   return {wire, *slot.strand, slot.generation};
 }
 
+contract::ComponentHealth store_health(bool failing) {
+  return {.name = "store",
+          .state = failing ? PartState::failed : PartState::up,
+          .healthy = !failing,
+          .automatic = true,
+          .text = failing ? "the disk does not keep the state" : ""};
+}
+
 }  // namespace
 
 Agent::Impl::Impl(const AgentParams& agent_params, Runtime& agent_runtime)
@@ -186,7 +194,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (routes_it) watch->watch(router, {.name = "router"});
   watch->watch(sensors, {.name = "sensors"});
   if (maps_it) watch->watch(map, {.name = "map"});
-  if (params.disk) watch->note({.name = "store", .state = PartState::up, .healthy = true, .automatic = true});
+  if (params.disk) watch->note(store_health(false));
   return e.radio->listen(
       {e.directory, e.namesakes,
        [with_command](const std::function<void(CommandInterface&)>& use) {
@@ -278,11 +286,7 @@ StateKeeper::Outputs Agent::Impl::keeper_outputs() {
                                 params.name + " cannot keep its state over a restart: " + text);
     else
       context->notifier->to_all(Severity::info, "store_works", Reason::none, params.name + ": " + text);
-    watch->note({.name = "store",
-                 .state = failing ? PartState::failed : PartState::up,
-                 .healthy = !failing,
-                 .automatic = true,
-                 .text = failing ? "the disk does not keep the state" : ""});
+    watch->note(store_health(failing));
   }};
 }
 
