@@ -62,9 +62,9 @@ Result<void> Content::open() {
 void Content::take(const radio::BulkPiece& sample, const wire::SampleInfo& info) {
   // Only the robot itself adds to its map and findings: Fleet::speaks_for would also take a participant that
   // is not known yet.
-  const auto piece = contract::decode(sample);
-  const RobotView* robot = piece ? fleet_.robot(piece->robot) : nullptr;
-  if (presence_.up() && robot && robot->participant == info.sender) pieces_.take(*piece);
+  const RobotView* robot = presence_.up() ? fleet_.robot(sample.robot()) : nullptr;
+  if (!robot || robot->participant != info.sender) return;
+  if (const auto piece = contract::decode(sample)) pieces_.take(*piece);
 }
 
 void Content::acknowledge() {
@@ -105,7 +105,8 @@ std::uint32_t Content::drawn_start() {
 }
 
 void Content::warn(const std::string& code, const std::string& text) {
-  fleet_.say({.severity = Severity::warning, .code = code, .text = command::clean(text, 240)}, strand_.now());
+  fleet_.say({.severity = Severity::warning, .code = code, .text = command::clean(text, contract::kMaxText)},
+             strand_.now());
 }
 
 FindingDesk::Outputs Content::desk_outputs() {

@@ -66,7 +66,7 @@ Result<void> Presence::start() {
     if (event.incompatible.empty()) return announce_often();
     fleet_.say({.severity = Severity::warning,
                 .code = "other_release",
-                .text = command::clean(event.incompatible, 240)},
+                .text = command::clean(event.incompatible, contract::kMaxText)},
                strand_.now());
   });
   // Random phases, so that stations that start together do not send at the same time.
