@@ -133,7 +133,7 @@ function(adit_test name)
   elseif(ADIT_SANITIZE MATCHES address AND NOT "unit" IN_LIST arg_LABELS)
     return()
   elseif(ADIT_SANITIZE MATCHES address AND NOT ADIT_SANITIZE_ALL AND NOT part MATCHES
-         "^(agent|bt|client|cloud|command|core|findings|gui|live|perception|record|station|store|transfer|wire)$")
+         "^(agent|bt|client|cloud|command|contract|core|findings|gui|live|perception|record|station|store|transfer|wire)$")
     return()
   elseif(ADIT_SANITIZE STREQUAL thread AND NOT part MATCHES "^(client|core|wire|live)$")
     return()
