@@ -143,6 +143,11 @@ class Pages : public testing::Test {
         kOutputLimit);
   }
 
+  bool driver_was_silent() const {
+    return shell_.out().find("[driver_silent]", shell_.out().rfind("\n@@ " + std::to_string(steps_ - 1) +
+                                                                   " ")) != std::string::npos;
+  }
+
   void follow(const std::vector<PageLine>& page) {
     ASSERT_FALSE(page.empty());
     bool after_output = true;
@@ -153,7 +158,11 @@ class Pages : public testing::Test {
         EXPECT_TRUE(printed(line.text)) << "it is not printed, but:\n" << shell_.out().substr(seen_);
       } else {
         if (after_output) seen_ = shell_.out().size();
-        const auto status = step(here(line.text));
+        auto status = step(here(line.text));
+        // On a busy machine a simulated driver may fall silent for a moment, and a person types the line
+        // again.
+        for (int tries = 0; tries < 5 && status && *status != 0 && driver_was_silent() && ready(); ++tries)
+          status = step(here(line.text));
         ASSERT_TRUE(status) << "it does not end:\n" << shell_.out().substr(seen_);
         EXPECT_EQ(*status, 0) << shell_.out().substr(seen_);
         const bool starts = std::regex_search(line.text, std::regex("^robot_agent .*&"));

@@ -84,7 +84,7 @@ bool FailureLab::enter(const std::string& mode) {
   goes_on_ = mode == "waypoint";
   if (!calm()) return false;
   if (mode == "hold") return true;
-  if (mode == "waypoint" && !eventually([&] { return op_->ask("goto r1 9000 0").exit_code == 0; }))
+  if (mode == "waypoint" && !eventually([&] { return op_->ask("goto r1 60 0").exit_code == 0; }))
     return false;
   // Refused while the agent that was just started has not heard its driver yet.
   if (mode != "waypoint" && !eventually([&] { return op_->ask("mode r1 " + mode).exit_code == 0; }))

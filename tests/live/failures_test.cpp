@@ -71,7 +71,7 @@ TEST(Components, AHungCommandStrandEndsTheAgentWhichComesBack) {
   for (int i = 0; i < max_measurements() && found >= 1500.0; ++i) {
     FailureLab lab;
     ASSERT_TRUE(lab.ready()) << lab.err();
-    ASSERT_TRUE(lab.enter("waypoint"));
+    ASSERT_TRUE(lab.enter("waypoint")) << lab.err() << lab.console("health");
     const pid_t before = lab.agent();
     const auto hung = lab.hang("command");
     ASSERT_TRUE(hung.told && hung.back) << lab.err();
