@@ -109,6 +109,7 @@ Time RobotDriver::simulated(Duration at) {
 // A failed write is counted by the wire and shown with its counters; the next sample replaces it.
 void RobotDriver::send_odom() {
   if (odometry_silent_ > 0) return;
+  if (params_.catch_up) params_.catch_up();
   const Odometry& measured = simulation_.odometry(robot_);
   const bool realistic = simulation_.params().realistic;
   nav_msgs::msg::Odometry odom;
@@ -166,6 +167,7 @@ void RobotDriver::send_battery() {
 
 void RobotDriver::send_points() {
   if (lidar_silent_ > 0) return;
+  if (params_.catch_up) params_.catch_up();
   std::weak_ptr<Endpoints> alive = endpoints_;
   const auto send = [alive](const Result<std::vector<std::uint8_t>>& bytes) {
     const auto endpoints = alive.lock();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ struct DriverParams {
   double charge{1.0};           ///< Charge of the battery at the start, [0, 1].
   double drain{1.0 / 14400.0};  ///< Charge that the battery loses a second, 1/s, [0, 1].
   agent::VelocityType velocity{agent::VelocityType::twist};  ///< Type of the /cmd_vel that it obeys.
+  /// Called before odometry and scans are taken: a live world catches up with the clock that stamps them. May
+  /// be empty.
+  std::function<void()> catch_up{};
 };
 
 /// A simulated robot's driver: obeys rt/cmd_vel and gives rt/odom, rt/points and rt/battery_state, in a
