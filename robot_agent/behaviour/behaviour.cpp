@@ -226,7 +226,7 @@ Progress Behaviour::clearing() const {
 
 void Behaviour::stop_changed(bool stopped, Time now) {
   stopped_ = stopped;
-  if (stopped && inputs_.right_of_way) inputs_.right_of_way->stopped();
+  if (RightOfWay* way = inputs_.right_of_way) stopped ? way->stopped() : way->reset();
   if (!stopped && fell_because_ == Reason::stopped) fell_because_ = Reason::none;
   tick(now);
 }

@@ -77,13 +77,15 @@ class RightOfWay {
   /// Allows the robot to make way, or no longer. Errors: not_supported.
   Result<void> allow(bool allowed, Time now);
   bool allowed() const { return allowed_; }
-  /// The permission sleeps after a software stop until the holder's next request.
+  /// The permission sleeps from a software stop until the holder's first request after the reset.
   bool asleep() const { return asleep_; }
   void restore(bool allowed, bool asleep) {
     allowed_ = allowed && params_.can_clear;
     asleep_ = asleep;
   }
   void stopped();
+  /// The last software stop was cleared. What was requested before moves nothing.
+  void reset() { asleep_ = allowed_; }
   void holder_requested() { asleep_ = false; }
   void holder_changed();
 

@@ -16,7 +16,8 @@ constexpr Duration kAskLifetime = 5s;
 
 /// Rule 8: peers need permission. A robot moves in convoy_follow only by a place in a convoy that its present
 /// holder gave it, and while it hears a robot that the holder named before it; in get_out only while its
-/// present holder allows it, not after a stop, and while a robot asks it to make way.
+/// present holder allows it, not from a stop until a request after the reset, and while a robot asks it to make
+/// way.
 class PeersNeedPermission : public Rule {
  public:
   void on_event(const RobotModel& robot, const Event& event,
@@ -50,7 +51,8 @@ class PeersNeedPermission : public Rule {
     const bool no_holder = other_holder || command.verb == Verb::release || command.verb == Verb::grant;
     if (command.verb == Verb::yield) yields_ = command.text == "on";
     if (no_holder) yields_ = false;
-    if (command.verb == Verb::stop) asleep_ = true;
+    const bool was_stopped = !robot.latches().empty();
+    if (command.verb == Verb::stop || (command.verb == Verb::reset && was_stopped)) asleep_ = true;
     if (command.verb == Verb::yield || command.verb == Verb::mode || command.verb == Verb::go_to ||
         command.verb == Verb::join)
       asleep_ = false;
@@ -100,7 +102,7 @@ class PeersNeedPermission : public Rule {
   std::map<std::string, Duration> heard_{};  ///< Last beacon of each robot.
   std::vector<std::string> ahead_{};         ///< Robots before this one; empty: it has no place.
   bool follow_reported_{};
-  bool yields_{}, asleep_{};         ///< Its holder's permission, which sleeps after a stop.
+  bool yields_{}, asleep_{};         ///< Its holder's permission, which sleeps after a stop and a reset.
   std::optional<Duration> asked_{};  ///< A robot asked it last.
   bool yield_reported_{};
 };

@@ -131,6 +131,26 @@ class MoveOnReset final : public NumberedInterceptor {
   }
 };
 
+/// A request that arrives while it is stopped wakes the permission to make way; the reset leaves it awake.
+class YieldWakesStopped final : public NumberedInterceptor {
+ public:
+  using NumberedInterceptor::NumberedInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    pass(command, out);
+    if (!held_by(command.sample.station_id())) return;
+    const auto kind = command.sample.kind();
+    const auto& words = command.sample.words();
+    if (kind == radio::CMD_YIELD) allowed_ = !words.empty() && words[0] == "on";
+    const bool stopped = !authority().stops().empty();
+    if (stopped && (kind == radio::CMD_YIELD || kind == radio::CMD_MODE)) woken_ = true;
+    if (kind == radio::CMD_RESET && std::exchange(woken_, false) && allowed_)
+      give(radio::CMD_YIELD, out, "on");
+  }
+
+ private:
+  bool allowed_{}, woken_{};
+};
+
 class KindByPosition final : public RadioInterceptor {
  public:
   using RadioInterceptor::RadioInterceptor;
@@ -223,6 +243,7 @@ Decoration both_namesakes_obey(const Subject& s) {
   return decoration;
 }
 Decoration fence_soft(const Subject& s) { return on_wires<FenceSoft>(s); }
+Decoration yield_wakes_stopped(const Subject& s) { return on_wires<YieldWakesStopped>(s); }
 Decoration kind_by_position(const Subject& s) { return on_wires<KindByPosition>(s); }
 
 }  // namespace decorations

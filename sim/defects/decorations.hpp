@@ -14,6 +14,7 @@ Decoration silent_refusal(const Subject& subject);
 Decoration stop_needs_holder(const Subject& subject);
 Decoration joystick_clears_stop(const Subject& subject);
 Decoration move_on_reset(const Subject& subject);
+Decoration yield_wakes_stopped(const Subject& subject);
 Decoration enter_off_centre(const Subject& subject);
 Decoration both_namesakes_obey(const Subject& subject);
 Decoration kind_by_position(const Subject& subject);

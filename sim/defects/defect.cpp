@@ -51,6 +51,8 @@ constexpr std::array kDefects{
     Defect{"follows_nobody", "rule 8: convoy_follow needs no place in a convoy, and drives ahead",
            d::follows_nobody},
     Defect{"yields_unasked", "rule 8: get_out needs no robot that asks, and drives ahead", d::yields_unasked},
+    Defect{"yield_wakes_stopped", "rule 8: a request while it is stopped lets it make way after the reset",
+           d::yield_wakes_stopped},
     Defect{"lock_forgotten", "rule 9: the lock does not survive a restart", d::lock_forgotten},
     Defect{"acknowledged_lost", "rule 9: the disk acknowledges the state, and writes it up to 5 s later",
            d::acknowledged_lost},

@@ -245,6 +245,24 @@ TEST_F(RightOfWayTest, ThePermissionEndsWithItsHolderAndSleepsAfterAStop) {
   EXPECT_FALSE(way.allowed());
 }
 
+TEST_F(RightOfWayTest, NothingThatIsRequestedWhileTheRobotIsStoppedMovesItAfterTheReset) {
+  RightOfWay way = make();
+  ASSERT_TRUE(way.allow(true, now));
+  own.stopped = true;
+  way.stopped();
+  way.holder_requested();
+  ASSERT_TRUE(way.allow(true, now));
+  own.stopped = false;
+  way.reset();
+  pass(way, 5s, {asker()});
+  EXPECT_FALSE(way.clears()) << "a reset moves nothing";
+  EXPECT_TRUE(way.allowed());
+  EXPECT_TRUE(way.asleep());
+  way.holder_requested();
+  pass(way, 400ms, {asker()});
+  EXPECT_TRUE(way.clears());
+}
+
 TEST_F(RightOfWayTest, AQueuingRobotDoesNotAsk) {
   RightOfWay way = make("r1");
   own.mode = "waypoint";

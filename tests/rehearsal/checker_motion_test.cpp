@@ -376,6 +376,33 @@ TEST(CheckerMotion, ARobotThatMakesWayBreaksNothing) {
   EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
 }
 
+/// op1 allows r1 to make way, stops it, allows it again and resets it, while another robot asks.
+void reset_while_asked(Record& r) {
+  r.take(1);
+  allow(r, "on");
+  r.answer(r.ask(1, Verb::stop));
+  allow(r, "on");
+  r.answer(r.ask(1, Verb::reset));
+  r.see(BeaconHeard{"r0", {"r1"}});
+  r.behave("get_out");
+}
+
+TEST(CheckerMotion, ARobotThatMakesWayAfterAReset) {
+  Record r;
+  reset_while_asked(r);
+  r.pass(1s, kForward);
+  EXPECT_THAT(r.broken(), ElementsAre(8)) << r.texts();
+}
+
+TEST(CheckerMotion, ARobotThatMakesWayAfterARequestThatFollowsTheReset) {
+  Record r;
+  reset_while_asked(r);
+  allow(r, "on");
+  r.answer(r.ask(1, Verb::reset));  // It is not stopped.
+  r.pass(1s, kForward);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
 TEST(CheckerMotion, ARobotThatMakesWayAndIsNotAsked) {
   Record r;
   r.take(1);

@@ -20,17 +20,18 @@ struct Broken {
   int seed;
   const char* script;     ///< Further lines
   const char* rest{""};   ///< Further keys
-  const char* robot{""};  ///< Further keys of r1
+  const char* robot{""};  ///< Further keys of r1, and further robots
+  const char* boxes{"[]"};
 };
 
 RunReport run(const Broken& broken, const std::string& defect) {
-  const std::string text =
-      "world: {boxes: [], floor: 0, ceiling: 3}\nduration: 10\nlink: wifi\nlidar: planar\nseed: " +
-      std::to_string(broken.seed) + "\nrobots:\n  - {id: r1, platform: wheeled, pose: [0, 0, 0]" +
-      broken.robot +
-      "}\nbasestations:\n  - {id: op1, pose: [0, 3]}\n  - {id: op2, pose: [0, -3]}\n"
-      "script:\n  - {at: 1.5, by: op1, do: take r1}\n" +
-      broken.script + broken.rest;
+  const std::string text = "world: {boxes: " + std::string(broken.boxes) +
+                           ", floor: 0, ceiling: 3}\nduration: 10\nlink: wifi\nlidar: planar\nseed: " +
+                           std::to_string(broken.seed) +
+                           "\nrobots:\n  - {id: r1, platform: wheeled, pose: [0, 0, 0]" + broken.robot +
+                           "}\nbasestations:\n  - {id: op1, pose: [0, 3]}\n  - {id: op2, pose: [0, -3]}\n"
+                           "script:\n  - {at: 1.5, by: op1, do: take r1}\n" +
+                           broken.script + broken.rest;
   return run_text(text, "defect.yaml", defect);
 }
 
@@ -89,6 +90,15 @@ const std::vector<Broken>& table() {
        "faults:\n  - {at: 4, stuck: [op1, r1], for: 5}\n"},
       {"follows_nobody", 8, 1, "  - {at: 3, by: op1, do: mode r1 convoy_follow}\n"},
       {"yields_unasked", 8, 1, "  - {at: 3, by: op1, do: mode r1 get_out}\n"},
+      // r1 stands in a corridor of 1.2 m with a pocket, and r2 wants to pass.
+      {"yield_wakes_stopped", 8, 1,
+       "  - {at: 2, by: op1, do: take r2}\n  - {at: 2.2, by: op1, do: yield r1 on}\n"
+       "  - {at: 2.4, by: op1, do: stop r1}\n  - {at: 2.8, by: op1, do: mode r1 hold}\n"
+       "  - {at: 3, by: op1, do: goto r2 8 0}\n  - {at: 6, by: op1, do: reset r1}\n",
+       "odometry: {noise: 0}\n", "}\n  - {id: r2, platform: wheeled, pose: [-5, 0, 0]",
+       "[[-7, -6.7, -0.9, 0.9, 0, 3], [-7, 1, 0.6, 0.9, 0, 3], [3, 12, 0.6, 0.9, 0, 3], "
+       "[-7, 12, -0.9, -0.6, 0, 3], [0.7, 1, 0.9, 2.4, 0, 3], [3, 3.3, 0.9, 2.4, 0, 3], "
+       "[0.7, 3.3, 2.4, 2.7, 0, 3], [12, 12.3, -0.9, 0.9, 0, 3]]"},
       {"fence_soft", 10, 1,
        "  - {at: 2, by: op1, do: area r1 add wall keep_out 4 -2 5 2}\n  - {at: 3, by: op1, do: goto r1 8 "
        "0}\n",
