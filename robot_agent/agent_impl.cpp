@@ -231,7 +231,10 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
            });
          });
        },
-       pieces_to_carry()});
+       pieces_to_carry(),
+       [with_command](const std::string& name, const std::string& why) {
+         with_command([&](CommandComponent& component) { component.announcement_refused(name, why); });
+       }});
 }
 
 std::function<void(const contract::BulkPiece&, const wire::ParticipantId&)> Agent::Impl::pieces_to_carry() {

@@ -60,6 +60,7 @@ constexpr std::array kRows{
     AlertRow{"findings_full", soon},
     AlertRow{"store_failing", soon, Ends::seen, "store_works"},
     AlertRow{"other_release", soon},
+    AlertRow{"announcement_refused", soon},
 
     // News.
     AlertRow{"taken", know},

@@ -13,6 +13,23 @@ namespace {
 
 constexpr std::string_view kNameTaken = "name_taken:";
 
+/// Amounts of any ground or aerial robot that a team has, SI units; 0 is always allowed: unknown, or none.
+struct Limit {
+  const char *name, *unit;
+  float (radio::Capabilities::*amount)() const;
+  float least, most;
+};
+constexpr Limit kLimits[]{
+    {"length", "m", &radio::Capabilities::length, 0.05F, 20.0F},
+    {"width", "m", &radio::Capabilities::width, 0.05F, 20.0F},
+    {"height", "m", &radio::Capabilities::height, 0.02F, 20.0F},
+    {"max_speed", "m/s", &radio::Capabilities::max_speed, 0.0F, 50.0F},
+    {"max_turn", "rad/s", &radio::Capabilities::max_turn, 0.0F, 50.0F},
+    {"max_acceleration", "m/s2", &radio::Capabilities::max_acceleration, 0.0F, 100.0F},
+    {"max_step", "m", &radio::Capabilities::step, 0.0F, 5.0F},
+    {"max_slope", "rad", &radio::Capabilities::slope, 0.0F, 1.6F},
+};
+
 AgentKind kind_of(radio::AgentKind kind) { return known_or(kind, AgentKind::station, AgentKind::robot); }
 
 }  // namespace
@@ -65,8 +82,21 @@ radio::Capabilities encode(const Capabilities& capabilities) {
   return out;
 }
 
+std::string amount_refused(const radio::Capabilities& sample) {
+  for (const Limit& limit : kLimits) {
+    const float amount = (sample.*limit.amount)();
+    if (amount == 0.0F || (amount >= limit.least && amount <= limit.most)) continue;  // False for NaN.
+    char text[96];
+    std::snprintf(text, sizeof text, "%s of %g %s (expected 0, or %g to %g)", limit.name,
+                  static_cast<double>(amount), limit.unit, static_cast<double>(limit.least),
+                  static_cast<double>(limit.most));
+    return text;
+  }
+  return {};
+}
+
 std::optional<Capabilities> decode(const radio::Capabilities& sample) {
-  if (!command::valid_name(sample.name())) return std::nullopt;
+  if (!command::valid_name(sample.name()) || !amount_refused(sample).empty()) return std::nullopt;
   Capabilities out{.name = sample.name(),
                    .kind = kind_of(sample.kind()),
                    .id = sample.id(),
@@ -74,14 +104,14 @@ std::optional<Capabilities> decode(const radio::Capabilities& sample) {
                    .software = cleaned_name(sample.software()),
                    .platform = cleaned_name(sample.platform()),
                    .holonomic = sample.holonomic(),
-                   .length = amount(sample.length()),
-                   .width = amount(sample.width()),
-                   .height = amount(sample.height()),
-                   .max_speed = amount(sample.max_speed()),
-                   .max_turn = amount(sample.max_turn()),
-                   .max_acceleration = amount(sample.max_acceleration()),
-                   .max_step = amount(sample.step()),
-                   .max_slope = amount(sample.slope()),
+                   .length = sample.length(),
+                   .width = sample.width(),
+                   .height = sample.height(),
+                   .max_speed = sample.max_speed(),
+                   .max_turn = sample.max_turn(),
+                   .max_acceleration = sample.max_acceleration(),
+                   .max_step = sample.step(),
+                   .max_slope = sample.slope(),
                    .stairs = sample.stairs(),
                    .sensors = cleaned_names(sample.sensors(), Capabilities::kMaxSensors),
                    .modes = cleaned_names(sample.modes(), Capabilities::kMaxModes),

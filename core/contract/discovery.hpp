@@ -69,7 +69,10 @@ struct Capabilities {
 };
 
 radio::Capabilities encode(const Capabilities& capabilities);
-/// Returns nothing if the name is not valid. Words are cleaned, amounts are finite and not negative.
+/// The first amount that is outside its limits, and these, as text; "" when there is none.
+std::string amount_refused(const radio::Capabilities& sample);
+/// Returns nothing if the name is not valid, or an amount is refused: no limit of a robot and no distance
+/// from another one may follow from a length in millimetres. Words are cleaned.
 std::optional<Capabilities> decode(const radio::Capabilities& sample);
 
 /// Heartbeat of a robot or a station.

@@ -44,15 +44,24 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   return rest;
 }
 
+// Cells that one call clears at most: 25 cars of 2 x 5 m. What a larger body hides stays in the map.
+constexpr double kMostCleared = 100'000;
+
 void set_team(nav::RoutePlanner& planner, const std::vector<TeamRobot>& team, double half_width) {
+  constexpr double kStep = nav::kRouteCell / 2;
   std::vector<nav::TeamPlace> places;
+  double rest = kMostCleared;
   for (const TeamRobot& robot : team) {
     const double length = robot.length / 2 + kOutline, width = robot.width / 2 + kOutline;
-    for (double x = -length; x <= length; x += nav::kRouteCell / 2)
-      for (double y = -width; y <= width; y += nav::kRouteCell / 2) {
-        const Eigen::Vector2d at = robot.pose * Eigen::Vector2d(x, y);
-        planner.clear_obstacle({at.x(), at.y(), robot.z});
-      }
+    const double cells = (2 * length / kStep + 1) * (2 * width / kStep + 1);
+    if (cells <= rest) {  // False for NaN.
+      rest -= cells;
+      for (double x = -length; x <= length; x += kStep)
+        for (double y = -width; y <= width; y += kStep) {
+          const Eigen::Vector2d at = robot.pose * Eigen::Vector2d(x, y);
+          planner.clear_obstacle({at.x(), at.y(), robot.z});
+        }
+    }
     if (robot.cost > 0.0)
       places.push_back({{robot.pose.x, robot.pose.y, robot.z},
                         std::max(robot.length, robot.width) / 2 + half_width,

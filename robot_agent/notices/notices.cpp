@@ -47,6 +47,11 @@ void Notices::namesake(const wire::ParticipantId& other, bool gives_way) const {
                           : "this one was first and stays in service; give the other one a name of its own"));
 }
 
+void Notices::announcement_refused(const std::string& name, const std::string& why) const {
+  to_holder(Severity::warning, "announcement_refused", Reason::out_of_range,
+            name + " announces a " + why + "; " + robot_ + " ignores it: correct the file of " + name);
+}
+
 void Notices::rival(const wire::ParticipantId& writer) const {
   to_all(Severity::error, "rival_writer", Reason::none,
          "participant " + wire::to_string(writer) + " writes velocities to the driver of " + robot_ +
@@ -99,7 +104,9 @@ void Notices::warning(Warning warning, bool stops) const {
               "the lidar of " + robot_ + " is silent: it drives blindly, at most 0.3 m/s");
   else if (warning == Warning::outside_area)
     to_holder(Severity::warning, "outside_area", Reason::outside_area,
-              robot_ + " is where its areas forbid it to be; in an autonomous mode it drives back");
+              robot_ +
+                  " is where its areas forbid it to be; an autonomous mode drives it back from up to 1 m "
+                  "inside, from farther you do, by hand");
   else if (warning == Warning::tilted)
     to_holder(
         Severity::error, "tilted", Reason::tilted,

@@ -35,6 +35,7 @@ class Notices {
   /// in service.
   void namesake(const wire::ParticipantId& other, bool gives_way) const;
   void rival(const wire::ParticipantId& writer) const;
+  void announcement_refused(const std::string& name, const std::string& why) const;
   /// Reports a jump of the odometry. `guess`: the assumed pose of the robot, map frame.
   void odometry_jumped(const Pose2& guess) const;
   void not_localised_here(const Pose2& guess, const std::string& why) const;

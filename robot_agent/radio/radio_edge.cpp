@@ -52,7 +52,7 @@ struct RadioEdge::Endpoints {
   contract::Capabilities capabilities_sample{};
   wire::PeerMeter stations{};  // Quality of the link from each station.
   Timer presence_timer{};
-  std::uint64_t malformed_beacons{};
+  std::uint64_t malformed{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
   /// A command whose goal is being judged: since when, and how many samples of it wait for the answer.
   struct Judgement {
@@ -178,10 +178,15 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                     if (p->name != e.robot) directory.on_presence(p->name, p->id, info.sender, now);
                   }),
            e.read(topics::kCapabilities,
-                  [&e, commands, &directory, &namesakes](const radio::Capabilities&sample,
-                                                         const wire::SampleInfo&info) {
+                  [&e, commands, &directory, &namesakes, refused = dependencies.refused](
+                      const radio::Capabilities&sample, const wire::SampleInfo&info) {
                     const auto c = contract::decode(sample);
-                    if (!c) return;
+                    if (!c) {
+                      ++e.malformed;
+                      if (refused && command::valid_name(sample.name()))
+                        refused(sample.name(), contract::amount_refused(sample));
+                      return;
+                    }
                     const Time now = e.strand.now();
                     if (c->kind == contract::AgentKind::station)
                       commands([&](CommandInterface& interface) {
@@ -230,7 +235,7 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                   [&e, take = dependencies.beacon](const radio::TeamBeacon&b, const wire::SampleInfo&info) {
                     if (info.sender == e.wire.id() || !take) return;
                     const auto beacon = contract::decode(b);
-                    e.malformed_beacons += beacon ? 0 : 1;
+                    e.malformed += beacon ? 0 : 1;
                     take(beacon, info.sender);
                   }),
            e.read(topics::kBulkAck, e.acknowledged),
@@ -330,7 +335,7 @@ void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed, double
   Endpoints& e = *endpoints_;
   contract::LinkReport report = e.meter.read(e.robot, e.wire.counters(), e.wire.sender(), now);
   report.state_rate = state_rate;
-  report.malformed += static_cast<std::uint32_t>(inner_malformed + e.malformed_beacons);
+  report.malformed += static_cast<std::uint32_t>(inner_malformed + e.malformed);
   constexpr Duration kForgotten = 60s;  // A station that was silent for longer has no link.
   for (const wire::PeerMeter::Peer& peer : e.stations.peers(now)) {
     if (peer.held > kForgotten)

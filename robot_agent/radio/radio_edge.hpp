@@ -46,6 +46,8 @@ class RadioEdge {
         pieces_acknowledged{};
     /// Takes a piece of another robot's map. Empty: this robot carries no maps.
     std::function<void(const contract::BulkPiece& piece, const wire::ParticipantId& from)> piece_to_carry{};
+    /// Takes the reason why what a robot or station announced was refused.
+    std::function<void(const std::string& name, const std::string& why)> refused{};
   };
 
   /// `io`: the command component's, on the radio domain. Errors: those of the participant.

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "adit/command.h"
+#include "adit/discovery.h"
 #include "adit/robot.h"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/wire/component_io.hpp"
@@ -24,9 +25,16 @@ class RadioEdgeTest : public testing::Test {
     op1.participant = station->id();
     bench.interface().hear(op1, 1, bench.now);
     EXPECT_TRUE(bench.say("op1", "take").accepted());
-    EXPECT_TRUE(edge->listen({directory, namesakes, [this](const auto& use) { use(bench.interface()); },
-                              [](const Task& task) { task(); }, [](const auto&, const auto&) {},
-                              [](const auto&, bool, const auto&) {}}));
+    RadioEdge::Dependencies dependencies{directory,
+                                         namesakes,
+                                         [this](const auto& use) { use(bench.interface()); },
+                                         [](const Task& task) { task(); },
+                                         [](const auto&, const auto&) {},
+                                         [](const auto&, bool, const auto&) {}};
+    dependencies.refused = [this](const std::string& name, const std::string& why) {
+      refused.push_back(name + ": " + why);
+    };
+    EXPECT_TRUE(edge->listen(std::move(dependencies)));
     run(3s);  // the endpoints match
     EXPECT_EQ(joystick.matched(), 1U);
   }
@@ -46,6 +54,7 @@ class RadioEdgeTest : public testing::Test {
   wire::Writer<radio::Joystick> joystick{
       wire::Writer<radio::Joystick>::make(*station, wire::topics::kJoystick, "r1").value()};
   CommandBench bench{};
+  std::vector<std::string> refused{};
   PeerTable peers{held};
   Directory directory{peers};
   Namesakes namesakes{radio->id()};
@@ -69,6 +78,17 @@ TEST_F(RadioEdgeTest, AStickThatWaitedForTheCommandStrandIsStale) {
   held.release();
   run(1ms);
   EXPECT_TRUE(bench.requests.sticks.empty()) << "its echo alone, of 400 ms ago, would let it pass";
+}
+
+TEST_F(RadioEdgeTest, ASizeThatNoRobotHasIsRefusedAndReported) {
+  held.release();
+  auto capabilities = wire::Writer<radio::Capabilities>::make(*station, wire::topics::kCapabilities).value();
+  for (const float length : {600.0F, 0.6F})
+    EXPECT_TRUE(capabilities.write(encode(contract::Capabilities{.name = "r2", .length = length})));
+  run(3s);
+  EXPECT_THAT(refused, testing::ElementsAre("r2: length of 600 m (expected 0, or 0.05 to 20)"));
+  ASSERT_NE(peers.find("r2"), nullptr);
+  EXPECT_FLOAT_EQ(peers.find("r2")->length, 0.6F);
 }
 
 TEST_F(RadioEdgeTest, OfARevokedCommandComponentNeitherWritesNorReads) {

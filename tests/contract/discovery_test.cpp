@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/contract/discovery.hpp"
 
+#include <limits>
+
 #include "adit/discovery.h"
 #include "core/command/words.hpp"
 #include "core/wire/topics.hpp"
@@ -8,11 +10,19 @@
 
 namespace adit::contract {
 
+static float plausible(RandomSamples& random) {
+  return random.random().chance(0.2) ? 0.0F : static_cast<float>(random.random().uniform(0.05, 1.6));
+}
+
 static void randomize(RandomSamples& random, radio::Capabilities& out) {
   random.any(out.name(), out.kind(), out.id(), out.protocol(), out.software(), out.platform(),
              out.holonomic(), out.length(), out.width(), out.height(), out.max_speed(), out.max_turn(),
              out.max_acceleration(), out.step(), out.slope(), out.stairs(), out.sensors(), out.modes(),
              out.services(), out.placed(), out.place());
+  if (random.random().chance(0.2)) return;
+  for (float* amount : {&out.length(), &out.width(), &out.height(), &out.max_speed(), &out.max_turn(),
+                        &out.max_acceleration(), &out.step(), &out.slope()})
+    *amount = plausible(random);
 }
 
 static void randomize(RandomSamples& random, radio::Presence& out) {
@@ -38,7 +48,7 @@ TEST(ContractDiscovery, CapabilitiesComeBackAsTheyWereAndFitTheirTopic) {
     random.any(sent.id, sent.protocol, sent.holonomic, sent.stairs);
     for (float* amount : {&sent.length, &sent.width, &sent.height, &sent.max_speed, &sent.max_turn,
                           &sent.max_acceleration, &sent.max_step, &sent.max_slope})
-      *amount = static_cast<float>(std::fabs(random.number(1e4)));
+      *amount = plausible(random);
     if (random.random().chance(0.5)) sent.kind = AgentKind::station;
     if (sent.kind == AgentKind::station && random.random().chance(0.5)) sent.place = {1.0F, -2.5F, 0.25F};
     EXPECT_EQ(decode(through_cdr(encode(sent), wire::topics::kCapabilities)), sent);
@@ -49,14 +59,14 @@ TEST(ContractDiscovery, AnyCapabilitiesAreBounded) {
   int taken = 0, places = 0;
   for_any<radio::Capabilities>([&](const radio::Capabilities& sample) {
     const auto read = decode(sample);
-    EXPECT_EQ(read.has_value(), command::valid_name(sample.name()));
+    EXPECT_EQ(read.has_value(), command::valid_name(sample.name()) && amount_refused(sample).empty());
     if (!read) return;
     ++taken;
     EXPECT_EQ(read->kind == AgentKind::station, sample.kind() == radio::AGENT_STATION);
     for (const float amount : {read->length, read->width, read->height, read->max_speed, read->max_turn,
                                read->max_acceleration, read->max_step, read->max_slope}) {
       EXPECT_GE(amount, 0.0F);
-      EXPECT_LT(amount, 1e12F);
+      EXPECT_LE(amount, 100.0F);
     }
     EXPECT_LE(read->sensors.size(), Capabilities::kMaxSensors);
     EXPECT_LE(read->modes.size(), Capabilities::kMaxModes);
@@ -72,6 +82,22 @@ TEST(ContractDiscovery, AnyCapabilitiesAreBounded) {
   });
   EXPECT_GT(taken, 0);
   EXPECT_GT(places, 0);
+}
+
+TEST(ContractDiscovery, AnAmountThatNoRobotHasIsRefusedWithItsLimits) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  for (const float wrong : {600.0F, 1e30F, inf, nan, -1.0F}) {
+    for (auto amount : {&Capabilities::length, &Capabilities::width, &Capabilities::height,
+                        &Capabilities::max_speed, &Capabilities::max_turn, &Capabilities::max_acceleration,
+                        &Capabilities::max_step, &Capabilities::max_slope}) {
+      Capabilities sent{.name = "r2"};
+      sent.*amount = wrong;
+      EXPECT_FALSE(decode(encode(sent))) << wrong;
+    }
+  }
+  const auto sample = encode(Capabilities{.name = "r2", .length = 600.0F, .width = 0.5F});
+  EXPECT_EQ(amount_refused(sample), "length of 600 m (expected 0, or 0.05 to 20)");
+  EXPECT_FALSE(decode(encode(Capabilities{.name = "r2", .length = 0.01F}))) << "a length in another unit";
 }
 
 TEST(ContractDiscovery, APresenceComesBackAsItWas) {
