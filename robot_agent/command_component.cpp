@@ -72,6 +72,10 @@ void Agent::CommandComponent::external(const Twist2& velocity, Time received) {
   });
 }
 
+void Agent::CommandComponent::announcement_refused(const std::string& name, const std::string& why) {
+  if (refusals_reported_.pass(0, now())) notices_.announcement_refused(name, why);
+}
+
 void Agent::CommandComponent::rival(const wire::ParticipantId& writer, Time received) {
   protect([&] {
     if (rivals_.heard(writer, received)) notices_.rival(writer);
@@ -238,7 +242,7 @@ void Agent::CommandComponent::beat() {
   behaviour_.tick(at);
   navigation_.limit_speed(
       std::min(convoy_.speed_limit(behaviour_.mode().name == "convoy_follow"), right_of_way_.speed_limit()));
-  navigation_.set_areas(behaviour_.areas());
+  navigation_.set_areas(behaviour_.areas(), place_sigma());
   mux_.step(at);
   navigation_.step(at);
   keep();
@@ -312,6 +316,10 @@ Facts Agent::CommandComponent::sense(Time now) const {
     f.unlocalised = context_.place.why();
   else if (localisation(now) == Localisation::lost)
     f.unlocalised = Reason::localisation_lost;
+  else if (f.localised && navigation_.is_far_out()) {
+    f.localised = false;
+    f.unlocalised = Reason::outside_area;
+  }
   f.terrain_fresh = navigation_.terrain_fresh(now);
   f.map_fresh = navigation_.map_fresh(now);
   return f;
@@ -368,7 +376,8 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
   };
   inputs.goal_permitted = [this](const nav::AreaSet& areas, const Eigen::Vector3d& goal) {
     const double z = std::isfinite(goal.z()) ? goal.z() : frames_.height();
-    return areas.permits({goal.x(), goal.y(), z}, nav::least_reach(params_.platform));
+    return areas.with_margin(Fence::margin(place_sigma()))
+        .permits({goal.x(), goal.y(), z}, nav::least_reach(params_.platform));
   };
   return inputs;
 }

@@ -90,6 +90,8 @@ class Agent::CommandComponent : public Component {
   void external(const Twist2& velocity, Time received);
   /// Reports another participant that writes velocities to this robot's driver.
   void rival(const wire::ParticipantId& writer, Time received);
+  /// Reports that what a robot or station announced of itself is ignored, once in 10 s.
+  void announcement_refused(const std::string& name, const std::string& why);
   void commands(const std::function<void(CommandInterface&)>& use);
   /// Asks the robot's global planner for a route to `goal` (map frame, m) and calls `done` exactly once,
   /// within 0.5 s.
@@ -189,6 +191,7 @@ class Agent::CommandComponent : public Component {
   RivalWatch rivals_;
   bool gives_way_{};                         ///< It gives way to another robot of its name.
   RateLimit<bool> namesakes_reported_{10s};  // The key is `gives_way_`.
+  RateLimit<int> refusals_reported_{10s};    // Under one key: a stranger may invent any number of names.
   BeaconRate beacon_rate_{};
   std::uint32_t beats_{};    ///< Number of calls of beat().
   std::uint32_t beacons_{};  ///< Number of beacons sent.

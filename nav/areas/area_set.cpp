@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "nav/areas/side.hpp"
 
@@ -13,6 +15,8 @@ namespace {
 constexpr double kBeyond = 1e-3;       // m beyond a side, where it is examined which ground lies there.
 constexpr double kShortest = 1e-6;     // m: shorter pieces of the border are left out.
 constexpr double kPointSpacing = 0.1;  // m between points along the border.
+constexpr double kInStrip = 1e-3;      // m: a point is nearer to permitted ground than the margin.
+constexpr int kKeepIn = -1;            // Part of the border of the keep_in areas.
 
 Eigen::Vector2d left_of(const BorderPiece& piece) {
   const Eigen::Vector2d way = (piece.to - piece.from).normalized();
@@ -42,9 +46,10 @@ std::vector<BorderPiece> border_of(const std::vector<Area>& areas, double z) {
   for (const Area& area : areas) {
     if (area.kind == AreaKind::prefer || !area.at_height(z)) continue;
     for (std::size_t i = 0; i < area.corners.size(); ++i) {
-      BorderPiece side{area.corners[i], area.corners[(i + 1) % area.corners.size()]};
+      BorderPiece side{area.corners[i], area.corners[(i + 1) % area.corners.size()], kKeepIn};
       if (area.kind == AreaKind::keep_out) {
         std::swap(side.from, side.to);
+        side.part = static_cast<int>(&area - areas.data());
         border.push_back(side);
         continue;
       }
@@ -63,7 +68,7 @@ std::vector<BorderPiece> border_of(const std::vector<Area>& areas, double z) {
         const bool inside = std::any_of(areas.begin(), areas.end(), [&](const Area& other) {
           return joins(other) && other.contains(beyond);
         });
-        if (!inside) border.push_back({side.from + cuts[k] * way, side.from + cuts[k + 1] * way});
+        if (!inside) border.push_back({side.from + cuts[k] * way, side.from + cuts[k + 1] * way, kKeepIn});
       }
     }
   }
@@ -95,13 +100,15 @@ std::optional<std::pair<double, double>> part_within(const BorderPiece& line,
 
 struct AreaSet::Content {
   std::vector<Area> areas;
+  std::vector<double> margins;                      ///< Of each area, m.
   std::vector<double> levels{};                     ///< Heights at which the areas change, ascending, m.
   std::vector<std::vector<BorderPiece>> borders{};  ///< Below, between and above those.
 };
 
-AreaSet::AreaSet(std::vector<Area> areas) {
+AreaSet::AreaSet(std::vector<Area> areas, std::vector<double> margins) {
   if (areas.empty()) return;
-  Content content{std::move(areas)};
+  margins.resize(areas.size(), kMargin);
+  Content content{std::move(areas), std::move(margins)};
   for (const Area& area : content.areas)
     for (const double z : {area.z_min - Area::kHeightError, area.z_max + Area::kHeightError})
       if (std::isfinite(z)) content.levels.push_back(z);
@@ -160,24 +167,89 @@ AreaSet AreaSet::in_frame(const Pose2& T_other_this, double z) const {
   return AreaSet(std::move(areas));
 }
 
-bool AreaSet::permits(const Eigen::Vector3d& place) const {
-  bool bounded = false, within = false;
-  for (const Area& area : all()) {
-    if (area.kind == AreaKind::prefer) continue;
-    const bool here = area.at_height(place.z()) && area.contains(place.head<2>());
-    if (area.kind == AreaKind::keep_out && here) return false;
-    bounded = bounded || area.kind == AreaKind::keep_in;
-    within = within || (area.kind == AreaKind::keep_in && here);
+AreaSet AreaSet::with(std::vector<double> margins) const {
+  if (empty() || margins == content_->margins) return *this;
+  AreaSet changed;
+  auto content = std::make_shared<Content>(*content_);
+  content->margins = std::move(margins);
+  changed.content_ = std::move(content);
+  return changed;
+}
+
+AreaSet AreaSet::with_margin(double margin) const {
+  return with_margins([margin](const Area&) { return margin; });
+}
+
+template <class Permits>
+bool AreaSet::all_parts(const Eigen::Vector3d& place, Permits&& permits) const {
+  if (empty()) return true;
+  const std::vector<Area>& areas = content_->areas;
+  std::optional<double> keep_in_margin;
+  bool within = false;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    if (areas[i].kind == AreaKind::prefer) continue;
+    const bool here = areas[i].at_height(place.z()) && areas[i].contains(place.head<2>());
+    if (areas[i].kind == AreaKind::keep_in) {
+      keep_in_margin = content_->margins[i];
+      within = within || here;
+    } else if (!permits(static_cast<int>(i), !here, content_->margins[i])) {
+      return false;
+    }
   }
-  return !bounded || within;
+  return !keep_in_margin || permits(kKeepIn, within, *keep_in_margin);
+}
+
+double AreaSet::to_border(const Eigen::Vector3d& place, int part) const {
+  double square = std::numeric_limits<double>::infinity();
+  for (const BorderPiece& piece : border(place.z()))
+    if (piece.part == part)
+      square = std::min(square, squared_distance(place.head<2>(), piece.from, piece.to));
+  return std::sqrt(square);
+}
+
+bool AreaSet::permits(const Eigen::Vector3d& place) const {
+  return all_parts(place, [&](int part, bool on_permitted, double margin) {
+    return on_permitted || (margin < 0.0 && to_border(place, part) <= -margin);
+  });
 }
 
 bool AreaSet::permits(const Eigen::Vector3d& place, double distance) const {
-  if (empty()) return true;
-  const auto pieces = border(place.z());
-  return permits(place) && std::none_of(pieces.begin(), pieces.end(), [&](const BorderPiece& piece) {
-           return squared_distance(place.head<2>(), piece.from, piece.to) < distance * distance;
-         });
+  return all_parts(place, [&](int part, bool on_permitted, double margin) {
+    const double reach = margin + distance;
+    if (on_permitted) return reach <= 0.0 || to_border(place, part) >= reach;
+    return reach < 0.0 && to_border(place, part) <= -reach;
+  });
+}
+
+double AreaSet::clearance(const Eigen::Vector3d& place) const {
+  double least = std::numeric_limits<double>::infinity();
+  all_parts(place, [&](int part, bool on_permitted, double) {
+    const double distance = to_border(place, part);
+    least = std::min(least, on_permitted ? distance : -distance);
+    return true;
+  });
+  return least;
+}
+
+double AreaSet::clearance(std::span<const Eigen::Vector2d> outline, double z) const {
+  double least = std::numeric_limits<double>::infinity();
+  if (empty()) return least;
+  for (const Eigen::Vector2d& corner : outline)
+    least = std::min(least, clearance(Eigen::Vector3d(corner.x(), corner.y(), z)));
+  // A corner of the border may be nearer to a side of the outline, or within it.
+  for (const BorderPiece& piece : border(z)) {
+    double square = std::numeric_limits<double>::infinity();
+    bool within = true;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const Eigen::Vector2d &a = outline[i], &b = outline[(i + 1) % outline.size()];
+      square = std::min(square, squared_distance(piece.from, a, b));
+      within = within && cross_of(b - a, piece.from - a) > 0.0;
+    }
+    least = std::min(least, within ? -std::sqrt(square) : std::sqrt(square));
+    // A side that crosses the outline beside all corners.
+    if (!within && least > 0.0 && part_within(piece, outline)) least = 0.0;
+  }
+  return least;
 }
 
 bool AreaSet::permits(std::span<const Eigen::Vector2d> outline, double z) const {
@@ -215,6 +287,14 @@ double AreaSet::weight(const Eigen::Vector3d& place) const {
   return weight;
 }
 
+double AreaSet::margin(const BorderPiece& piece) const {
+  for (std::size_t i = 0; i < content_->areas.size(); ++i)
+    if (piece.part == kKeepIn ? content_->areas[i].kind == AreaKind::keep_in
+                              : piece.part == static_cast<int>(i))
+      return content_->margins[i];
+  return kMargin;
+}
+
 std::span<const BorderPiece> AreaSet::border(double z) const {
   if (!content_) return {};
   const auto& levels = content_->levels;
@@ -236,10 +316,11 @@ void sample_border(const AreaSet& areas, const Eigen::Vector3d& place, double ra
                    std::vector<Eigen::Vector2f>& points) {
   const Eigen::Vector2d centre = place.head<2>();
   for (const BorderPiece& piece : areas.border(place.z())) {
+    const double margin = areas.margin(piece), longer = std::fabs(margin);
     const Eigen::Vector2d way = (piece.to - piece.from).normalized();
     // Longer at both ends, so that nothing is open at a corner.
-    const Eigen::Vector2d from = piece.from + AreaSet::kMargin * (left_of(piece) - way);
-    const double length = (piece.to - piece.from).norm() + 2 * AreaSet::kMargin;
+    const Eigen::Vector2d from = piece.from + margin * left_of(piece) - longer * way;
+    const double length = (piece.to - piece.from).norm() + 2 * longer;
     // The part within the circle around the place.
     const double middle = (centre - from).dot(way), off = (centre - from - middle * way).norm();
     if (off >= range) continue;
@@ -249,7 +330,10 @@ void sample_border(const AreaSet& areas, const Eigen::Vector3d& place, double ra
     const int steps = static_cast<int>(std::ceil((last - first) / kPointSpacing));
     for (int i = 0; i <= steps; ++i) {
       const double along = std::min(last, first + kPointSpacing * i);
-      points.push_back((from + along * way).cast<float>());
+      const Eigen::Vector2d point = from + along * way;
+      // Beyond the border, the end of one line lies in the strip of another one, which is open.
+      if (margin < 0.0 && areas.permits(Eigen::Vector3d(point.x(), point.y(), place.z()), kInStrip)) continue;
+      points.push_back(point.cast<float>());
     }
   }
 }

@@ -13,15 +13,16 @@ class RouteGround final : public GroundView {
   /// `areas`: those of the robot; `within`: what it is to explore. Both in the planner's frame.
   RouteGround(RoutePlanner& planner, const Platform& platform, const AreaSet& areas = {},
               const AreaSet& within = {})
-      : planner_(planner), areas_(areas), within_(within), reach_(platform.width / 2 + kMargin) {}
+      : planner_(planner), areas_(areas), within_(within), half_width_(platform.width / 2) {}
   std::optional<double> ground(double x, double y, double z) override { return planner_.ground(x, y, z); }
   bool standable(const Eigen::Vector3d& place) override {
-    if (!areas_.permits(place, reach_)) return false;
+    if (!areas_.permits(place, half_width_)) return false;
+    const double reach = half_width_ + kFree;
     for (int k = 0; k < kSides; ++k) {
       const double bearing = 2 * M_PI * k / kSides;
       const GroundCell* cell =
-          planner_.map().cell(route_cell(place.x() + reach_ * std::cos(bearing)),
-                              route_cell(place.y() + reach_ * std::sin(bearing)), place.z());
+          planner_.map().cell(route_cell(place.x() + reach * std::cos(bearing)),
+                              route_cell(place.y() + reach * std::sin(bearing)), place.z());
       if (cell == nullptr || !cell->known || cell->blocked) return false;
     }
     return true;
@@ -35,12 +36,12 @@ class RouteGround final : public GroundView {
   }
 
  private:
-  static constexpr double kMargin = 0.1;  ///< Free on each side of the body, m.
+  static constexpr double kFree = 0.1;  ///< On each side of the body, m.
   static constexpr int kSides = 8;
 
   RoutePlanner& planner_;
   AreaSet areas_, within_;
-  double reach_;  ///< m
+  double half_width_;  ///< m
 };
 
 }  // namespace adit::nav

@@ -57,7 +57,7 @@ bool RouteGraph::is_blocked_between(const Eigen::Vector3d& place, int ix, int iy
 // passable.
 std::optional<RouteEnd> RouteGraph::find_end(const Eigen::Vector3d& place, double reach) {
   const int cx = route_cell(place.x()), cy = route_cell(place.y());
-  if (params_.through_unknown && map_.at_cell(cx, cy, place.z()) < 0 && map_.areas().permits(place))
+  if (params_.through_unknown && map_.at_cell(cx, cy, place.z()) < 0 && map_.areas().permits(place, 0.0))
     return RouteEnd{place, -1, 0};
   const int cells = static_cast<int>(reach / kRouteCell);
   std::optional<RouteEnd> best;
@@ -110,7 +110,8 @@ Route RouteGraph::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   auto goal = find_end(goal_place, params_.snap);
   // The ground at the goal is unknown and no height was given: it may be on any floor, also a deck above.
   const bool any_floor = !std::isfinite(to.z()) && !ground(to.x(), to.y(), from.z());
-  if (params_.through_unknown && any_floor && (!goal || goal->tile < 0) && map_.areas().permits(goal_place))
+  if (params_.through_unknown && any_floor && (!goal || goal->tile < 0) &&
+      map_.areas().permits(goal_place, 0.0))
     goal = RouteEnd{goal_place, -1, 0, true};
   if (!start)
     route.status = RouteStatus::start_blocked;

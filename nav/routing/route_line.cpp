@@ -39,7 +39,8 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
     }
     const double weight = i == 0 || i == steps ? share / 2 : share;
     if (!tile) {
-      if (!map_.areas().empty() && !map_.areas().permits({from.x() + t * way.x(), from.y() + t * way.y(), z}))
+      if (!map_.areas().empty() &&
+          !map_.areas().permits({from.x() + t * way.x(), from.y() + t * way.y(), z}, 0.0))
         return {};
       result.cost += weight * builder_.unknown_cost();
       result.unknown += weight;

@@ -128,7 +128,7 @@ bool RouteSearch::prepare(const RouteEnd& start, const RouteEnd& goal) {
 void RouteSearch::reach(Id id, float cost, Id from) {
   const bool unseen = id < start_id_ && is_virtual(id);
   if (unseen && (to_many_ || !params_.through_unknown)) return;
-  if (unseen && !map_.areas().empty() && !map_.areas().permits(place(id))) return;
+  if (unseen && !map_.areas().empty() && !map_.areas().permits(place(id), 0.0)) return;
   if (map_.has_team()) cost += static_cast<float>(map_.team_cost(place(from), place(id)));
   State& s = states_[id];
   if (s.search == search_ && (s.closed || s.cost <= cost)) return;

@@ -113,7 +113,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
 // Forbidden ground, and what is nearer to it than robots may come, is an obstacle. The clearance counts from
 // the centres of cells, so those that the margin ends in count, too.
 void TileBuilder::forbid(const AreaSet& areas, const Tile& tile) {
-  constexpr double kReach = AreaSet::kMargin + kRouteCell;
+  constexpr double kReach = kRouteCell;
   const auto place = [&](double x, double y) {
     return Eigen::Vector3d((tile.tx * kTileSide - kTileHalo + x) * kRouteCell,
                            (tile.ty * kTileSide - kTileHalo + y) * kRouteCell, tile.z);

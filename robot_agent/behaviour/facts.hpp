@@ -10,9 +10,10 @@ namespace adit::agent {
 
 /// The state of the robot by which the conditions of its modes are evaluated.
 struct Facts {
-  bool stopped{};        ///< A software stop is set.
-  bool driver_alive{};   ///< Odometry arrived within the last 0.5 s.
-  bool localised{};      ///< The start pose is known, and odometry was received.
+  bool stopped{};       ///< A software stop is set.
+  bool driver_alive{};  ///< Odometry arrived within the last 0.5 s.
+  /// The start pose is known, odometry was received, and the place is not far inside forbidden ground.
+  bool localised{};
   bool terrain_fresh{};  ///< Lidar points arrived within the last 0.5 s.
   bool stick_fresh{};    ///< A stick sample arrived within the last 0.3 s.
   bool stick_present{};  ///< A stick sample arrived within the last 1 s: the manual mode may continue.

@@ -83,7 +83,7 @@ bool Navigation::is_bound() const {
 
 void Navigation::update_fence(Time now) {
   if (areas_.empty() && fence_.empty()) return;
-  fence_.update(areas_, frames_);
+  fence_.update(areas_, frames_, place_sigma_, is_bound());
   monitor_.set_border(is_bound() ? fence_.border(frames_, kBorderRange) : std::vector<Eigen::Vector2f>{});
   if (!fence_.is_obeyed() && !std::holds_alternative<Stand>(motion_)) warn(Warning::outside_area, now);
 }

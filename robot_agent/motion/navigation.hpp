@@ -59,10 +59,16 @@ class Navigation : public Component, public NavigationInput {
   void step(Time now);
   /// Limits the speed along the planner's paths, m/s; infinite: the platform's limit alone.
   void limit_speed(double limit) { speed_limit_ = limit; }
-  /// Sets the areas, map frame, that bind autonomous modes.
-  void set_areas(const nav::AreaSet& areas) { areas_ = areas; }
+  /// Sets the areas, map frame, that bind autonomous modes. `sigma`: standard deviation of the robot's place
+  /// in that frame, m.
+  void set_areas(const nav::AreaSet& areas, double sigma = 0.0) {
+    areas_ = areas;
+    place_sigma_ = sigma;
+  }
   /// The areas in the odometry frame, for the router.
-  RouteAreas route_areas() const { return {fence_.all(), fence_.binding()}; }
+  RouteAreas route_areas() const { return {fence_.all(), fence_.routable()}; }
+  /// Whether the body is so far on forbidden ground that it does not come back by itself.
+  bool is_far_out() const { return fence_.is_far_out(); }
   /// `team`: the other robots, for the route map.
   void add_scan(std::shared_ptr<Scan> scan, Time received, Time now, std::vector<TeamRobot> team = {});
   /// The step along the route to the goal, odometry frame; null: no route is followed.
@@ -112,6 +118,7 @@ class Navigation : public Component, public NavigationInput {
   std::unique_ptr<nav::Controller> controller_;
   nav::CollisionMonitor monitor_;
   nav::AreaSet areas_{};  // Map frame.
+  double place_sigma_{};
   Fence fence_;
 
   Motion motion_{Stand{}};

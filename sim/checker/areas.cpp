@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "nav/areas/area_set.hpp"
 #include "sim/checker/rule.hpp"
@@ -9,10 +11,16 @@ namespace {
 
 /// A robot that was driven by hand towards a border may need this to brake when its mode changes.
 constexpr Duration kBraking = 1s;
+/// Distance from the border in standard deviations of the place.
+constexpr double kBorderSigmas = 3.0;
+/// A body that was nearer than that may get so much nearer, or farther out, on its way back, m.
+constexpr double kSlack = 0.15;
 
 /// Rule 10: areas are hard limits. In an autonomous mode no part of the body leaves the ground that the
-/// accepted areas permit. A body that is outside already, as after driving by hand, may come back. Judged by
-/// the true pose if the robot's odometry has no error, otherwise by the robot's own.
+/// accepted areas permit. Judged by the true pose if the robot's odometry has no error, otherwise by the
+/// robot's own. Where the true pose is known, it is also judged that the body keeps three of the standard
+/// deviations that the robot states from forbidden ground, and that one that is nearer or outside already, as
+/// after driving by hand, gets no farther out on its way back.
 class AreasAreHard : public Rule {
  public:
   void on_event(const RobotModel& robot, const Event& event,
@@ -22,6 +30,9 @@ class AreasAreHard : public Rule {
     if (const auto* ack = std::get_if<AckSent>(&event)) on_answer(robot, *ack);
     if (const auto* state = std::get_if<StateSent>(&event)) {
       height_ = state->pose.position.z();
+      if (kBorderSigmas * state->sigma > needed_)
+        kept_.reset();  // Where the body is now was near enough before.
+      needed_ = kBorderSigmas * state->sigma;
       if (!robot.facts().knows_its_place) judge(robot, state->pose.planar(), report_violation);
     }
     if (const auto* motion = std::get_if<Motion>(&event); motion && robot.facts().knows_its_place)
@@ -33,6 +44,7 @@ class AreasAreHard : public Rule {
     const RobotModel::Pending* pending = robot.answered_by(ack);
     if (!pending || !ack.accepted || robot.first_answer(RobotModel::key(pending->command))) return;
     const CommandHeard& command = pending->command;
+    if (command.verb == Verb::area_remove || command.verb == Verb::area_add) kept_.reset();
     if (command.verb == Verb::area_remove) areas_.remove(command.text);
     if (command.verb == Verb::area_add) add(command);
   }
@@ -64,16 +76,27 @@ class AreasAreHard : public Rule {
     within_ = areas_.permits(body, height_);
     const std::string& mode = robot.mode();
     const bool autonomous = robot.alive() && !mode.empty() && mode != "hold" && !robot.in_manual_mode();
-    if (within_ || !was_within || !autonomous || robot.age(robot.mode_changed()) < kBraking) return;
-    char text[96];
+    if (!autonomous || robot.age(robot.mode_changed()) < kBraking) return kept_.reset();
+    char text[128];
     std::snprintf(text, sizeof text, "left the ground that its areas permit at %.2f %.2f in ", pose.x,
                   pose.y);
+    if (!within_ && was_within) report_violation(text + mode);
+    if (!robot.facts().knows_its_place) return;
+    const double clearance = areas_.clearance(body, height_);
+    kept_ = std::max(kept_.value_or(clearance), clearance);
+    const double limit = *kept_ >= needed_ ? needed_ : *kept_ - kSlack;
+    if (clearance >= limit || (!within_ && was_within)) return;
+    std::snprintf(text, sizeof text, "%.2f m from forbidden ground, where at least %.2f m were due, in ",
+                  clearance, limit);
     report_violation(text + mode);
+    kept_ = clearance;  // Reported once.
   }
 
   nav::AreaSet areas_{};
   double height_{};
   bool within_{true};
+  double needed_{};               ///< Distance from forbidden ground by the stated deviation, m.
+  std::optional<double> kept_{};  ///< Greatest distance since the mode began or more was needed, m.
 };
 
 }  // namespace

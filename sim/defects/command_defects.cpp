@@ -175,6 +175,23 @@ class FenceSoft final : public RadioInterceptor {
   }
 };
 
+/// Forgets its areas when it is sent somewhere out of a manual mode.
+class AreaEndsOutside final : public NumberedInterceptor {
+ public:
+  using NumberedInterceptor::NumberedInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    const auto kind = command.sample.kind();
+    if (kind == radio::CMD_AREA_ADD && !command.sample.words().empty()) area_ = command.sample.words()[0];
+    if (kind == radio::CMD_GOTO && !area_.empty() && was_driven_) give(radio::CMD_AREA_REMOVE, out, area_);
+    pass(command, out);
+  }
+  void on_behaviour(radio::BehaviourState&) override { was_driven_ = was_driven_ || drives_by_hand(); }
+
+ private:
+  std::string area_{};
+  bool was_driven_{};
+};
+
 /// Does not hear other robots of its own name.
 class IgnoresNamesakes final : public Interceptor {
  public:
@@ -244,6 +261,7 @@ Decoration both_namesakes_obey(const Subject& s) {
 }
 Decoration fence_soft(const Subject& s) { return on_wires<FenceSoft>(s); }
 Decoration yield_wakes_stopped(const Subject& s) { return on_wires<YieldWakesStopped>(s); }
+Decoration area_ends_outside(const Subject& s) { return on_wires<AreaEndsOutside>(s); }
 Decoration kind_by_position(const Subject& s) { return on_wires<KindByPosition>(s); }
 
 }  // namespace decorations

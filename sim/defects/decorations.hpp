@@ -20,6 +20,7 @@ Decoration both_namesakes_obey(const Subject& subject);
 Decoration kind_by_position(const Subject& subject);
 Decoration accept_stale_joystick(const Subject& subject);
 Decoration fence_soft(const Subject& subject);
+Decoration area_ends_outside(const Subject& subject);
 
 // Of what moves the robot.
 Decoration two_sources(const Subject& subject);
@@ -29,6 +30,7 @@ Decoration manual_survives_handover(const Subject& subject);
 
 // Of where it says it is.
 Decoration sigma_small(const Subject& subject);
+Decoration sigma_not_kept(const Subject& subject);
 
 // Defects of its sensor input.
 Decoration age_at_handling(const Subject& subject);

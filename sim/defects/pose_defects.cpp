@@ -23,10 +23,22 @@ class SigmaSmall final : public RadioInterceptor {
   std::optional<Time> begin_{};
 };
 
+/// States a deviation of 0.4 m that nothing else of the robot knows of.
+class SigmaNotKept final : public RadioInterceptor {
+ public:
+  using RadioInterceptor::RadioInterceptor;
+  void on_state(radio::RobotState& state) override {
+    constexpr std::uint16_t kStated = 400;  // mm
+    state.sigma(kStated);
+    state.localisation(static_cast<std::uint8_t>(Localisation::ok));
+  }
+};
+
 }  // namespace
 
 namespace decorations {
 
+Decoration sigma_not_kept(const Subject& s) { return on_wires<SigmaNotKept>(s); }
 Decoration sigma_small(const Subject& s) { return on_wires<SigmaSmall>(s); }
 
 }  // namespace decorations

@@ -203,6 +203,54 @@ TEST(Areas, PointsAlongTheBorderCloseIt) {
   }
 }
 
+TEST(Areas, AMarginIsKeptFromTheBorder) {
+  const AreaSet set = set_of({area("shaft", AreaKind::keep_out, {{0, 0}, {4, 4}})}).with_margin(0.7);
+  EXPECT_TRUE(set.permits({-0.2, 2, 0})) << "it is permitted ground";
+  EXPECT_FALSE(set.permits({-0.6, 2, 0}, 0.0));
+  EXPECT_TRUE(set.permits({-0.8, 2, 0}, 0.0));
+  EXPECT_FALSE(set.permits({-0.8, 2, 0}, 0.2));
+  std::vector<Eigen::Vector2f> points;
+  sample_border(set, {2, 2, 0}, 6.0, points);
+  ASSERT_FALSE(points.empty());
+  for (const Eigen::Vector2f& p : points) EXPECT_TRUE(set.permits({p.x(), p.y(), 0}, -1e-4));
+}
+
+TEST(Areas, ANegativeMarginOpensAStripOfForbiddenGround) {
+  for (const AreaKind kind : {AreaKind::keep_out, AreaKind::keep_in}) {
+    const double out = kind == AreaKind::keep_out ? 1 : -1;  // Along x at the border, from permitted ground.
+    const AreaSet set = set_of({area("shaft", kind, {{0, 0}, {4, 4}})}).with_margin(-0.5);
+    EXPECT_TRUE(set.permits({out * 0.4, 2, 0}));
+    EXPECT_FALSE(set.permits({out * 0.6, 2, 0}));
+    EXPECT_TRUE(set.permits({out * 0.2, 2, 0}, 0.2));
+    EXPECT_FALSE(set.permits({out * 0.4, 2, 0}, 0.2));
+    EXPECT_TRUE(set.permits({-out * 0.1, 2, 0}, 0.3));
+    std::vector<Eigen::Vector2f> points;
+    sample_border(set, {2, 2, 0}, 6.0, points);
+    ASSERT_FALSE(points.empty());
+    for (const Eigen::Vector2f& p : points)
+      EXPECT_FALSE(set.permits({p.x(), p.y(), 0}, 0.01)) << p.transpose();
+  }
+}
+
+TEST(Areas, TheClearanceOfABodyIsThatOfItsFarthestPart) {
+  const auto body = [](double x, double y) {
+    return std::vector<Eigen::Vector2d>{
+        {x + 0.3, y + 0.2}, {x - 0.3, y + 0.2}, {x - 0.3, y - 0.2}, {x + 0.3, y - 0.2}};
+  };
+  const AreaSet out = set_of({area("shaft", AreaKind::keep_out, {{0, 0}, {4, 4}})});
+  EXPECT_NEAR(out.clearance(body(-1, 2), 0), 0.7, 1e-9);
+  EXPECT_NEAR(out.clearance(body(0, 2), 0), -0.3, 1e-9);
+  EXPECT_NEAR(out.clearance(body(-0.6, -0.6), 0), std::hypot(0.3, 0.4), 1e-9) << "a corner";
+  const AreaSet in = set_of({area("hall", AreaKind::keep_in, {{0, 0}, {4, 4}})});
+  EXPECT_NEAR(in.clearance(body(2, 2), 0), 1.7, 1e-9);
+  EXPECT_NEAR(in.clearance(body(4, 2), 0), -0.3, 1e-9);
+  // A wedge that reaches between the corners of the body.
+  const AreaSet wedge = set_of({area("wedge", AreaKind::keep_out, {{0.1, 0}, {5, -0.1}, {5, 0.1}})});
+  EXPECT_NEAR(wedge.clearance(body(0, 0), 0), -0.2, 1e-9);
+  EXPECT_NEAR(wedge.clearance(body(-0.5, 0), 0), 0.3, 1e-9);
+  EXPECT_EQ(AreaSet{}.clearance(body(0, 0), 0), kInfinity);
+}
+
 TEST(Areas, NoRouteLeavesThem) {
   GridWorld world(200, 200);
   world.border();

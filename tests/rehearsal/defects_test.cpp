@@ -103,6 +103,16 @@ const std::vector<Broken>& table() {
        "  - {at: 2, by: op1, do: area r1 add wall keep_out 4 -2 5 2}\n  - {at: 3, by: op1, do: goto r1 8 "
        "0}\n",
        "odometry: {noise: 0}\n"},
+      {"sigma_not_kept", 10, 1,
+       "  - {at: 2, by: op1, do: area r1 add hall keep_in -4 -4 3 4}\n"
+       "  - {at: 2.2, by: op1, do: area r1 add gallery keep_in 2 -1.2 12 1.2}\n  - {at: 3, by: op1, do: goto "
+       "r1 8 0}\n",
+       "odometry: {noise: 0}\n"},
+      // Driven over the border by hand; its way back to the near side of the area leads through it.
+      {"area_ends_outside", 10, 1,
+       "  - {at: 2, by: op1, do: area r1 add pit keep_out 1 -3 6 3}\n"
+       "  - {at: 2.5, by: op1, do: drive r1 0.8 0 0 --for 1.3}\n  - {at: 5, by: op1, do: goto r1 7.5 0}\n",
+       "odometry: {noise: 0}\n"},
       {"sigma_small", 11, 1, ""},
       {"lock_forgotten", 9, 1, kLock, kCrash},
       {"acknowledged_lost", 9, 1, kGo, kCrash},
