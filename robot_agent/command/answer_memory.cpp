@@ -21,15 +21,16 @@ bool AnswerMemory::too_old(const wire::ParticipantId& from, std::uint64_t seq, L
 }
 
 void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answer, Line line, bool durable,
-                            Time now) {
+                            Time now, const wire::ParticipantId* holder) {
   if (!entries_.contains(from) && entries_.size() >= kParticipants)
-    entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
-      return a.second.used < b.second.used;
+    entries_.erase(std::min_element(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
+      return worth(a, holder) < worth(b, holder);
     }));
   if (durable && answer.reason == Reason::none) ++accepted_;
   ParticipantAnswers& entry = entries_[from];
   if (entry.answers.empty()) entry.answers.resize(kAnswers);
   entry.used = now;
+  entry.obeyed = entry.obeyed || (durable && answer.reason == Reason::none);
   // A number older than the one in its slot was refused as stale; the newer answer stays.
   Answer& slot = entry.answers[answer.seq % kAnswers];
   if (answer.seq > slot.seq) slot = answer;
@@ -38,9 +39,14 @@ void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answe
   newest = std::max(newest, answer.seq);
 }
 
-std::vector<StoredAnswers> AnswerMemory::stored() const {
-  std::vector<std::pair<Time, StoredAnswers>> all;
-  for (const auto& [participant, entry] : entries_) {
+std::tuple<bool, bool, Time> AnswerMemory::worth(const Entry& entry, const wire::ParticipantId* holder) {
+  return {holder != nullptr && entry.first == *holder, entry.second.obeyed, entry.second.used};
+}
+
+std::vector<StoredAnswers> AnswerMemory::stored(const wire::ParticipantId* holder) const {
+  std::vector<std::pair<std::tuple<bool, bool, Time>, StoredAnswers>> all;
+  for (const Entry& of : entries_) {
+    const auto& [participant, entry] = of;
     StoredAnswers k{participant, {}, {}, entry.newest, entry.newest_of, entry.floor, {}};
     std::vector<const Answer*> answers;
     for (const Answer& a : entry.answers)
@@ -56,11 +62,11 @@ std::vector<StoredAnswers> AnswerMemory::stored() const {
     k.station_id = answers.back()->station_id;
     for (const Answer* a : answers)
       k.answers.push_back({a->seq, a->reason, a->text.substr(0, StoredAnswer::kText)});
-    all.emplace_back(entry.used, std::move(k));
+    all.emplace_back(worth(of, holder), std::move(k));
   }
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<StoredAnswers> stored;
-  for (auto& [used, answers] : all)
+  for (auto& [order, answers] : all)
     if (stored.size() < StoredAnswers::kParticipants) stored.push_back(std::move(answers));
   return stored;
 }
@@ -73,6 +79,7 @@ void AnswerMemory::restore(const std::vector<StoredAnswers>& stored, Time now) {
     entry.newest_of = k.newest_of;
     entry.floor = k.floor;
     entry.used = now;
+    entry.obeyed = true;  // Answers to questions are not stored alone.
     for (const StoredAnswer& a : k.answers)
       entry.answers[a.seq % kAnswers] = {
           .station = k.station, .station_id = k.station_id, .seq = a.seq, .reason = a.reason, .text = a.text};

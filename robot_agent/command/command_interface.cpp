@@ -67,6 +67,11 @@ const Station* CommandInterface::holders_station() const {
   return known && known->id == holder->id ? known : nullptr;
 }
 
+const wire::ParticipantId* CommandInterface::holders_participant() const {
+  const Station* station = holders_station();
+  return station ? &station->binding.participant() : nullptr;
+}
+
 void CommandInterface::restore(const StoredAuthority& stored, const std::vector<StoredAnswers>& answers,
                                Time now) {
   authority_.restore(stored.holder, stored.locked, stored.epoch.counter, now);
@@ -96,7 +101,8 @@ std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   const Answer result = answer(c, outcome);
   // A command with an invalid name is refused each time and needs no memory or disk space.
   if (c.seq != 0 && valid_name(c.from.name))
-    memory_.remember(c.from.participant, result, c.request.info->line, !is_question(*c.request.info), now);
+    memory_.remember(c.from.participant, result, c.request.info->line, !is_question(*c.request.info), now,
+                     holders_participant());
   return result;
 }
 
@@ -108,10 +114,9 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
       identity.reason != Reason::none) {
     if (identity.reason == Reason::identity_mismatch && !may_be_back(c.from))
       report_intruder(c.from.name, c.from.participant, now);
-    // A stop needs no authority: it is accepted without proof of the station's identity and without an entry
-    // in the table (rule 4).
-    const Station* known = stations_.find(c.from.name);
-    if (!stops || (known && known->id != c.from.id)) return identity;
+    // A stop needs no authority: it is accepted without proof of the station's identity, without an entry in
+    // the table, and under a name that another station has (rule 4). Its latch has the id of who sent it.
+    if (!stops) return identity;
   }
   if (c.seq == 0) return {Reason::bad_argument, "command numbers start at 1"};
   if (!stops && !is_meant(c.epoch)) return {Reason::name_taken};

@@ -65,7 +65,7 @@ class CommandInterface {
 
   /// The state that must survive a restart of the agent.
   StoredAuthority stored() const;
-  std::vector<StoredAnswers> stored_answers() const { return memory_.stored(); }
+  std::vector<StoredAnswers> stored_answers() const { return memory_.stored(holders_participant()); }
   /// Number of commands accepted since the start of this agent whose answers must survive a restart.
   std::uint64_t accepted() const { return memory_.accepted(); }
   /// Restores holder, lock and stops under a new epoch, before any message is processed. Sends no
@@ -103,6 +103,8 @@ class CommandInterface {
   Answer answer(const Command& c, const Outcome& outcome) const;
   /// The holder's station; null if the robot has no holder, or the station was not heard.
   const Station* holders_station() const;
+  /// The participant that sends for the holder; null: nobody holds the robot, or it was not heard yet.
+  const wire::ParticipantId* holders_participant() const;
   bool may_be_back(const MessageSender& from) const;
   void report_intruder(const std::string& name, const wire::ParticipantId& participant, Time now);
   void notify(const std::string& to, Severity severity, const char* code, Reason reason,

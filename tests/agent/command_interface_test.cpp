@@ -363,6 +363,35 @@ TEST(CommandInterface, HolderGetsHisNameBack) {
   EXPECT_EQ(bench.say("impostor:op1", "mode hold").reason, Reason::identity_mismatch);
 }
 
+TEST(CommandInterface, AStopUnderANameThatAnotherStationHasIsObeyed) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  EXPECT_TRUE(bench.say("impostor:op1", "stop").accepted()) << "two laptops with one name";
+  EXPECT_TRUE(bench.requests.stopped);
+  EXPECT_EQ(bench.say("op1", "reset").reason, Reason::stop_of_another);
+  EXPECT_TRUE(bench.requests.stopped) << "only who stopped it, or an override, clears it";
+  EXPECT_TRUE(bench.say("op1", "reset --override").accepted());
+  EXPECT_FALSE(bench.requests.stopped);
+}
+
+TEST(CommandInterface, StrangersDoNotEmptyTheMemoryOfTheHoldersAnswers) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  const Command go = bench.command("op1", "goto 5 0");
+  const Answer first = bench.send(go);
+  ASSERT_TRUE(first.accepted());
+  bench.requests.calls.clear();
+  for (const char* line : {"mode hold", "stop"})
+    for (int i = 0; i < 65; ++i) {
+      bench.now += 1ms;
+      bench.say("s" + std::to_string(i) + line, line);
+    }
+  const Answer again = bench.send(go);
+  EXPECT_EQ(again.reason, Reason::none);
+  EXPECT_EQ(std::count(bench.requests.calls.begin(), bench.requests.calls.end(), "goal"), 0)
+      << "it was carried out once";
+}
+
 TEST(CommandInterface, TableOfStationsIsBounded) {
   CommandBench bench;
   for (int i = 0; i < 61; ++i) EXPECT_TRUE(bench.say("s" + std::to_string(i), "stop").accepted());
