@@ -43,7 +43,9 @@ inline Qos qos_of(QosClass qos) {
 
 /// Whether a topic is one of ROS 2 peers. Default subscriptions there are reliable and match only a reliable
 /// writer; sensor publishers are often best effort and match only a best-effort reader. Our writers are
-/// therefore reliable and our readers best effort, so that they match all of them.
+/// therefore reliable and our readers best effort, so that they match all of them; but a reader of a latched
+/// topic is reliable, because a best-effort one gets no history. Publishers of these are reliable, as
+/// latching needs it.
 inline bool is_ros2(const TopicInfo& topic) { return std::string_view(topic.name).starts_with("rt/"); }
 
 inline Qos writer_qos(const TopicInfo& topic) {
@@ -53,7 +55,7 @@ inline Qos writer_qos(const TopicInfo& topic) {
 }
 inline Qos reader_qos(const TopicInfo& topic) {
   Qos qos = qos_of(topic.qos);
-  if (is_ros2(topic)) qos.reliable = false;
+  if (is_ros2(topic)) qos.reliable = qos.transient_local;
   return qos;
 }
 

@@ -13,6 +13,7 @@
 #include "core/wire/typed.hpp"
 #include "tests/wire/nets.hpp"
 #include "tests/wire/numbered_command.hpp"
+#include "tf2_msgs/msg/TFMessage.h"
 
 namespace adit::wire {
 namespace {
@@ -189,6 +190,31 @@ TYPED_TEST(Conformance, NotificationsKeepTheLastEightForALateJoiner) {
   ASSERT_TRUE(this->net.until([&] { return seen.size() >= 8; }));
   this->net.pass(300ms);
   EXPECT_EQ(seen.all(), (Seqs{5, 6, 7, 8, 9, 10, 11, 12}));
+}
+
+/// A reader of the latched topic that asks for no repairs.
+constexpr Topic<tf2_msgs::msg::TFMessage> kFramesBestEffort{
+    {"rt/tf_static", "tf2_msgs::msg::dds_::TFMessage_", QosClass::state, 16, topics::kUnkeyed, 1 << 16}};
+
+TYPED_TEST(Conformance, ALateReaderOfALatchedTopicGetsItsHistoryUnlessItIsBestEffort) {
+  auto writer = std::move(Writer<tf2_msgs::msg::TFMessage>::make(*this->robot, topics::kTfStatic)).value();
+  tf2_msgs::msg::TFMessage frames;
+  frames.transforms().resize(1);
+  ASSERT_TRUE(writer.write(frames).ok());
+  this->net.pass(300ms);
+  Seen<std::size_t> latched, best_effort;
+  const auto count = [](Seen<std::size_t>& seen) {
+    return [&seen](const tf2_msgs::msg::TFMessage& f, const SampleInfo&) { seen.add(f.transforms().size()); };
+  };
+  const auto reader = make_reader(*this->station, topics::kTfStatic, *this->strand, count(latched));
+  const auto other = make_reader(*this->station, kFramesBestEffort, *this->strand, count(best_effort));
+  ASSERT_TRUE(this->net.until([&] { return latched.size() == 1 && writer.matched() == 2; }));
+  this->net.pass(500ms);
+  EXPECT_EQ(best_effort.size(), 0U);
+  frames.transforms().resize(2);
+  ASSERT_TRUE(writer.write(frames).ok());
+  ASSERT_TRUE(this->net.until([&] { return latched.size() == 2 && best_effort.size() == 1; }));
+  EXPECT_EQ(latched.all(), (std::vector<std::size_t>{1, 2}));
 }
 
 TYPED_TEST(Conformance, CommandsAreNotReplayed) {

@@ -89,7 +89,7 @@ void ParticipantState::on_announcement(int from) {
   announce_to(from);
   discovery_reader->writers.try_emplace(EndpointId{from, kDiscoveryWriterEntity},
                                         ReaderState::Proxy{true, 0, {}});
-  discovery_writer->match({from, kDiscoveryReaderEntity}, true);
+  discovery_writer->match({from, kDiscoveryReaderEntity}, discovery_writer->topic.qos);
 }
 
 void ParticipantState::announce_to(int peer) {
@@ -141,8 +141,7 @@ void ParticipantState::on_endpoint(int from, int entity) {
   } else if (reader != other->readers.end()) {
     peer->second.readers[entity] = reader->second->topic;
     for (const auto& [own, state] : writers) {
-      if (fits(state->topic, reader->second->topic))
-        state->match(endpoint, reader->second->topic.qos.reliable);
+      if (fits(state->topic, reader->second->topic)) state->match(endpoint, reader->second->topic.qos);
     }
   } else {
     peer->second.writers.erase(entity);
@@ -188,7 +187,7 @@ void ParticipantState::add_writer(const std::shared_ptr<WriterState>& writer) {
   writers[writer->entity] = writer;
   for (const auto& [peer_node, peer] : peers) {
     for (const auto& [entity, topic] : peer.readers) {
-      if (fits(writer->topic, topic)) writer->match({peer_node, entity}, topic.qos.reliable);
+      if (fits(writer->topic, topic)) writer->match({peer_node, entity}, topic.qos);
     }
   }
   publish_endpoint(writer->entity);

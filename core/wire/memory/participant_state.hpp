@@ -73,7 +73,7 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   Result<void> write(std::span<const std::uint8_t> cdr);
   Error refused(Reason reason, const std::string& why);
   void add(Sample sample);
-  void match(EndpointId reader, bool reader_reliable);
+  void match(EndpointId reader, const Qos& reader_qos);
   void send(EndpointId reader, const Sample& sample, std::uint16_t frames);
   /// Sends discovery samples, as many endpoints in a frame as fit.
   void send_endpoints(EndpointId reader, const std::vector<Sample>& samples);

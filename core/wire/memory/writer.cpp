@@ -108,10 +108,12 @@ void WriterState::repair(Pending entry) {
   pending.insert(at, entry);
 }
 
-void WriterState::match(EndpointId reader, bool reader_reliable) {
+void WriterState::match(EndpointId reader, const Qos& reader_qos) {
   Proxy proxy;
-  proxy.reliable = topic.qos.reliable && reader_reliable;
-  const bool late = topic.qos.transient_local && !history.empty();
+  proxy.reliable = topic.qos.reliable && reader_qos.reliable;
+  // As in RTPS: a best-effort reader gets no history, whatever its durability, nor does a volatile one.
+  const bool latched = topic.qos.transient_local && reader_qos.transient_local && proxy.reliable;
+  const bool late = latched && !history.empty();
   proxy.start = late ? history.front().sequence : next;
   proxy.acknowledged = proxy.start - 1;
   if (!readers.emplace(reader, proxy).second) return;
