@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -27,7 +28,8 @@ class PointLayout {
   /// Reason::malformed when a field is missing, or lies outside the point.
   static Result<PointLayout> of(std::span<const PointField> fields, std::uint32_t point_step);
 
-  /// Unpacks `count` points.
+  /// Unpacks `count` points. The times count only of those that are a return; a few returns whose time is not
+  /// of their sweep become none.
   ///
   /// @param stamp     Of the message, ns.
   /// @param duration  How long a sweep takes, s: decides about the unit of the times.
@@ -40,9 +42,18 @@ class PointLayout {
     std::uint32_t offset{};
     std::uint8_t datatype{};
   };
-  Result<void> scale_times(Sweep& sweep, double first, double least, double most, double duration) const;
+  /// Times of the points that are a return, in the driver's unit.
+  struct Times {
+    double first{};  ///< Of a return; the others count from it.
+    double least{std::numeric_limits<double>::infinity()}, most{-std::numeric_limits<double>::infinity()};
+    std::size_t returns{};
+  };
+  /// Of the first return that has one; 0: none has.
+  double first_time(const std::uint8_t* at, std::uint64_t count) const;
+  void leave_out_few(Sweep& sweep, const std::uint8_t* data, Times& times, double duration) const;
+  Result<void> scale_times(Sweep& sweep, const Times& times, double duration) const;
   /// Seconds in one unit of the times; nothing when none fits.
-  std::optional<double> unit(double first, double span, std::size_t count, double duration) const;
+  std::optional<double> unit(const Times& times, double duration) const;
 
   std::uint32_t step_{};
   std::uint32_t x_{}, y_{}, z_{};

@@ -12,17 +12,23 @@ namespace {
 
 constexpr std::uint64_t kStamp = 1'700'000'000'000'000'000;  // ns
 
-/// A cloud of one turn with times of the type T named `name`.
+/// A cloud of one turn with times of the type T named `name`. Points in [first, last) of `lost` are no return
+/// and lie at `nowhere`.
+struct Lost {
+  std::size_t first{}, last{};
+  float nowhere{};
+};
 template <class T>
 Result<Sweep> unpack(const char* name, std::uint8_t datatype, const std::vector<T>& times,
-                     double duration = 0.1) {
+                     double duration = 0.1, Lost lost = {}) {
   const std::vector<PointField> fields{
       {"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {name, 16, datatype}, {"ring", 24, 4}};
   const auto layout = PointLayout::of(fields, 26);
   if (!layout) return layout.error();
   std::vector<std::uint8_t> data(26 * times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
-    const float x[3]{1, 2, 3};
+    const bool is_lost = i >= lost.first && i < lost.last;
+    const float n = lost.nowhere, x[3]{is_lost ? n : 1, is_lost ? n : 2, is_lost ? n : 3};
     const std::uint16_t ring = 5;
     std::memcpy(data.data() + 26 * i, x, 12);
     std::memcpy(data.data() + 26 * i + 16, &times[i], sizeof(T));
@@ -71,6 +77,65 @@ TEST(PointLayout, OrderOfThePointsDoesNotMatter) {
   ASSERT_TRUE(sweep) << sweep.error().text;
   EXPECT_NEAR(sweep->points.front().time, 0.1, 1e-6);
   EXPECT_NEAR(sweep->points[3].time, 0.07, 1e-3);
+}
+
+constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
+
+// Drivers leave the time of a lost column unset: 0, NaN, or the remainder of a negative number.
+TEST(PointLayout, TheTimesOfPointsWithoutAReturnDoNotCount) {
+  for (const std::size_t first : {0U, 400U, 992U})
+    for (const float nowhere : {0.0F, kNotANumber}) {
+      const Lost lost{first, first + 8, nowhere};
+      const auto set = [&lost](auto times, auto value) {
+        std::fill(times.begin() + static_cast<std::ptrdiff_t>(lost.first),
+                  times.begin() + static_cast<std::ptrdiff_t>(lost.last), value);
+        return times;
+      };
+      const auto zero = unpack<double>("timestamp", 8, set(turn<double>(1.7e9, 1.7e9 + 0.1), 0.0), 0.1, lost);
+      ASSERT_TRUE(zero) << zero.error().text;
+      EXPECT_NEAR(zero->points[500].time, 0.05, 1e-3);
+      const auto nan =
+          unpack<double>("timestamp", 8, set(turn<double>(1.7e9, 1.7e9 + 0.1), std::nan("")), 0.1, lost);
+      ASSERT_TRUE(nan) << nan.error().text;
+      for (const TimedPoint& point : nan->points) EXPECT_TRUE(std::isfinite(point.time));
+      const auto wrapped =
+          unpack<std::uint32_t>("t", 6, set(turn<std::uint32_t>(0, 99e6), 2'500'000'000U), 0.1, lost);
+      ASSERT_TRUE(wrapped) << wrapped.error().text;
+      EXPECT_NEAR(wrapped->points[500].time, 0.05, 1e-3);
+      std::size_t returns = 0;
+      for (const TimedPoint& p : wrapped->points) returns += p.position == Eigen::Vector3f(1, 2, 3) ? 1 : 0;
+      EXPECT_EQ(returns, 992U);
+    }
+}
+
+TEST(PointLayout, AFewReturnsWithAWrongTimeAreLeftOut) {
+  for (const std::size_t at : {0U, 500U, 999U}) {
+    auto times = turn<double>(1.7e9, 1.7e9 + 0.1);
+    times[at] = 0;
+    times[(at + 7) % 1000] = std::nan("");
+    const auto sweep = unpack<double>("timestamp", 8, times);
+    ASSERT_TRUE(sweep) << sweep.error().text;
+    EXPECT_TRUE(std::isnan(sweep->points[at].position.x()));
+    std::size_t returns = 0;
+    for (const TimedPoint& p : sweep->points) returns += p.position == Eigen::Vector3f(1, 2, 3) ? 1 : 0;
+    EXPECT_EQ(returns, 998U);
+    EXPECT_NEAR(sweep->points[300].time, 0.03, 2e-3);
+  }
+  auto times = turn<double>(1.7e9, 1.7e9 + 0.1);
+  std::fill_n(times.begin() + 100, 30, 0.0);
+  EXPECT_EQ(unpack<double>("timestamp", 8, times).reason(), Reason::sensor_times) << "3 % are not a few";
+}
+
+TEST(PointLayout, ARingThatIsNoNumberIsTheFirst) {
+  for (const float ring : {kNotANumber, 1e9F, -1.0F}) {
+    const auto layout =
+        PointLayout::of(std::vector<PointField>{{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"ring", 12, 7}}, 16);
+    const float point[4]{1, 2, 3, ring};
+    const auto sweep =
+        layout->unpack({reinterpret_cast<const std::uint8_t*>(point), sizeof point}, 1, kStamp, 0.1);
+    ASSERT_TRUE(sweep);
+    EXPECT_EQ(sweep->points[0].ring, 0);
+  }
 }
 
 TEST(PointLayout, RefusesTimesThatFitNoUnit) {
