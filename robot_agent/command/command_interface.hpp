@@ -103,7 +103,7 @@ class CommandInterface {
   Answer answer(const Command& c, const Outcome& outcome) const;
   /// The holder's station; null if the robot has no holder, or the station was not heard.
   const Station* holders_station() const;
-  /// The participant that sends for the holder; null: nobody holds the robot, or it was not heard yet.
+  /// The participant that sends for the holder; null: there is no holder, or it was not heard yet.
   const wire::ParticipantId* holders_participant() const;
   bool may_be_back(const MessageSender& from) const;
   void report_intruder(const std::string& name, const wire::ParticipantId& participant, Time now);

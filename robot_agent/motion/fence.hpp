@@ -53,7 +53,7 @@ class Fence {
   /// Areas with one margin.
   struct Part {
     nav::AreaSet areas;
-    std::optional<double> margin{};  ///< m; unset: it follows from where the body is.
+    std::optional<double> margin{};  ///< Of the border, m; unset: it follows from where the body is.
   };
   void convert(const nav::AreaSet& areas, const Frames& frames);
   nav::AreaSet with_margins(double farther) const;

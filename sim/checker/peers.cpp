@@ -16,8 +16,8 @@ constexpr Duration kAskLifetime = 5s;
 
 /// Rule 8: peers need permission. A robot moves in convoy_follow only by a place in a convoy that its present
 /// holder gave it, and while it hears a robot that the holder named before it; in get_out only while its
-/// present holder allows it, not from a stop until a request after the reset, and while a robot asks it to make
-/// way.
+/// present holder allows it, not from a stop until a request after the reset, and while a robot asks it to
+/// make way.
 class PeersNeedPermission : public Rule {
  public:
   void on_event(const RobotModel& robot, const Event& event,
