@@ -18,6 +18,8 @@ struct Limit {
   const char *name, *unit;
   float (radio::Capabilities::*amount)() const;
   float least, most;
+  /// False for NaN.
+  bool permits(float value) const { return value == 0.0F || (value >= least && value <= most); }
 };
 constexpr Limit kLimits[]{
     {"length", "m", &radio::Capabilities::length, 0.05F, 20.0F},
@@ -85,7 +87,7 @@ radio::Capabilities encode(const Capabilities& capabilities) {
 std::string amount_refused(const radio::Capabilities& sample) {
   for (const Limit& limit : kLimits) {
     const float amount = (sample.*limit.amount)();
-    if (amount == 0.0F || (amount >= limit.least && amount <= limit.most)) continue;  // False for NaN.
+    if (limit.permits(amount)) continue;
     char text[96];
     std::snprintf(text, sizeof text, "%s of %g %s (expected 0, or %g to %g)", limit.name,
                   static_cast<double>(amount), limit.unit, static_cast<double>(limit.least),
@@ -96,7 +98,11 @@ std::string amount_refused(const radio::Capabilities& sample) {
 }
 
 std::optional<Capabilities> decode(const radio::Capabilities& sample) {
-  if (!command::valid_name(sample.name()) || !amount_refused(sample).empty()) return std::nullopt;
+  if (!command::valid_name(sample.name())) return std::nullopt;
+  const auto known = [&sample](const Limit& limit) {
+    const float amount = (sample.*limit.amount)();
+    return limit.permits(amount) ? amount : 0.0F;
+  };
   Capabilities out{.name = sample.name(),
                    .kind = kind_of(sample.kind()),
                    .id = sample.id(),
@@ -104,14 +110,14 @@ std::optional<Capabilities> decode(const radio::Capabilities& sample) {
                    .software = cleaned_name(sample.software()),
                    .platform = cleaned_name(sample.platform()),
                    .holonomic = sample.holonomic(),
-                   .length = sample.length(),
-                   .width = sample.width(),
-                   .height = sample.height(),
-                   .max_speed = sample.max_speed(),
-                   .max_turn = sample.max_turn(),
-                   .max_acceleration = sample.max_acceleration(),
-                   .max_step = sample.step(),
-                   .max_slope = sample.slope(),
+                   .length = known(kLimits[0]),
+                   .width = known(kLimits[1]),
+                   .height = known(kLimits[2]),
+                   .max_speed = known(kLimits[3]),
+                   .max_turn = known(kLimits[4]),
+                   .max_acceleration = known(kLimits[5]),
+                   .max_step = known(kLimits[6]),
+                   .max_slope = known(kLimits[7]),
                    .stairs = sample.stairs(),
                    .sensors = cleaned_names(sample.sensors(), Capabilities::kMaxSensors),
                    .modes = cleaned_names(sample.modes(), Capabilities::kMaxModes),

@@ -71,8 +71,8 @@ struct Capabilities {
 radio::Capabilities encode(const Capabilities& capabilities);
 /// The first amount that is outside its limits, and these, as text; "" when there is none.
 std::string amount_refused(const radio::Capabilities& sample);
-/// Returns nothing if the name is not valid, or an amount is refused: no limit of a robot and no distance
-/// from another one may follow from a length in millimetres. Words are cleaned.
+/// Returns nothing if the name is not valid. Words are cleaned; amounts outside their limits are 0, unknown:
+/// no limit of a robot and no distance from another one follows from a length in millimetres.
 std::optional<Capabilities> decode(const radio::Capabilities& sample);
 
 /// Heartbeat of a robot or a station.

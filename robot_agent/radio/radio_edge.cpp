@@ -181,10 +181,10 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                   [&e, commands, &directory, &namesakes, refused = dependencies.refused](
                       const radio::Capabilities&sample, const wire::SampleInfo&info) {
                     const auto c = contract::decode(sample);
-                    if (!c) {
+                    const std::string wrong = contract::amount_refused(sample);
+                    if (!c || !wrong.empty()) {
                       ++e.malformed;
-                      if (refused && command::valid_name(sample.name()))
-                        refused(sample.name(), contract::amount_refused(sample));
+                      if (c && refused) refused(c->name, wrong);
                       return;
                     }
                     const Time now = e.strand.now();
