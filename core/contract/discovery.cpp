@@ -17,19 +17,21 @@ constexpr std::string_view kNameTaken = "name_taken:";
 struct Limit {
   const char *name, *unit;
   float (radio::Capabilities::*amount)() const;
+  float Capabilities::*known;
   float least, most;
   /// False for NaN.
   bool permits(float value) const { return value == 0.0F || (value >= least && value <= most); }
 };
 constexpr Limit kLimits[]{
-    {"length", "m", &radio::Capabilities::length, 0.05F, 20.0F},
-    {"width", "m", &radio::Capabilities::width, 0.05F, 20.0F},
-    {"height", "m", &radio::Capabilities::height, 0.02F, 20.0F},
-    {"max_speed", "m/s", &radio::Capabilities::max_speed, 0.0F, 50.0F},
-    {"max_turn", "rad/s", &radio::Capabilities::max_turn, 0.0F, 50.0F},
-    {"max_acceleration", "m/s2", &radio::Capabilities::max_acceleration, 0.0F, 100.0F},
-    {"max_step", "m", &radio::Capabilities::step, 0.0F, 5.0F},
-    {"max_slope", "rad", &radio::Capabilities::slope, 0.0F, 1.6F},
+    {"length", "m", &radio::Capabilities::length, &Capabilities::length, 0.05F, 20.0F},
+    {"width", "m", &radio::Capabilities::width, &Capabilities::width, 0.05F, 20.0F},
+    {"height", "m", &radio::Capabilities::height, &Capabilities::height, 0.02F, 20.0F},
+    {"max_speed", "m/s", &radio::Capabilities::max_speed, &Capabilities::max_speed, 0.0F, 50.0F},
+    {"max_turn", "rad/s", &radio::Capabilities::max_turn, &Capabilities::max_turn, 0.0F, 50.0F},
+    {"max_acceleration", "m/s2", &radio::Capabilities::max_acceleration, &Capabilities::max_acceleration,
+     0.0F, 100.0F},
+    {"max_step", "m", &radio::Capabilities::step, &Capabilities::max_step, 0.0F, 5.0F},
+    {"max_slope", "rad", &radio::Capabilities::slope, &Capabilities::max_slope, 0.0F, 1.6F},
 };
 
 AgentKind kind_of(radio::AgentKind kind) { return known_or(kind, AgentKind::station, AgentKind::robot); }
@@ -99,10 +101,6 @@ std::string amount_refused(const radio::Capabilities& sample) {
 
 std::optional<Capabilities> decode(const radio::Capabilities& sample) {
   if (!command::valid_name(sample.name())) return std::nullopt;
-  const auto known = [&sample](const Limit& limit) {
-    const float amount = (sample.*limit.amount)();
-    return limit.permits(amount) ? amount : 0.0F;
-  };
   Capabilities out{.name = sample.name(),
                    .kind = kind_of(sample.kind()),
                    .id = sample.id(),
@@ -110,18 +108,12 @@ std::optional<Capabilities> decode(const radio::Capabilities& sample) {
                    .software = cleaned_name(sample.software()),
                    .platform = cleaned_name(sample.platform()),
                    .holonomic = sample.holonomic(),
-                   .length = known(kLimits[0]),
-                   .width = known(kLimits[1]),
-                   .height = known(kLimits[2]),
-                   .max_speed = known(kLimits[3]),
-                   .max_turn = known(kLimits[4]),
-                   .max_acceleration = known(kLimits[5]),
-                   .max_step = known(kLimits[6]),
-                   .max_slope = known(kLimits[7]),
                    .stairs = sample.stairs(),
                    .sensors = cleaned_names(sample.sensors(), Capabilities::kMaxSensors),
                    .modes = cleaned_names(sample.modes(), Capabilities::kMaxModes),
                    .services = cleaned_names(sample.services(), Capabilities::kMaxServices)};
+  for (const Limit& limit : kLimits)
+    if (const float amount = (sample.*limit.amount)(); limit.permits(amount)) out.*limit.known = amount;
   const auto& [x, y, z] = sample.place();
   if (out.kind == AgentKind::station && sample.placed() && finite(x, y, z)) out.place = sample.place();
   return out;

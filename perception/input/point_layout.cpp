@@ -54,12 +54,6 @@ double read(const std::uint8_t* at, std::uint8_t datatype) {
   }
 }
 
-float as_float(const std::uint8_t* at) {
-  float value;
-  std::memcpy(&value, at, sizeof value);
-  return value;
-}
-
 std::uint16_t ring_number(double ring) {
   return ring >= 0.0 && ring <= 65535.0 ? static_cast<std::uint16_t>(ring) : std::uint16_t{0};
 }
@@ -153,7 +147,8 @@ Result<Sweep> PointLayout::unpack(std::span<const std::uint8_t> data, std::uint6
 double PointLayout::first_time(const std::uint8_t* at, std::uint64_t count) const {
   for (std::uint64_t i = 0; i < count; ++i, at += step_) {
     const double time = read(at + time_->offset, time_->datatype);
-    if (std::isfinite(time) && is_return({as_float(at + x_), as_float(at + y_), as_float(at + z_)}))
+    if (std::isfinite(time) &&
+        is_return(Eigen::Vector3d(as<float>(at + x_), as<float>(at + y_), as<float>(at + z_)).cast<float>()))
       return time;
   }
   return 0.0;
