@@ -169,7 +169,13 @@ void Agent::CommandComponent::restore() {
   // A component that was restarted within this process continues from its last state in memory, otherwise
   // from the state on the disk.
   if (const auto& last = context_.keeper->given()) context_.restored = restored_from(*last);
-  if (!context_.restored.snapshot) return;
+  if (!context_.restored.snapshot) {
+    if (!context_.restored.lost) return;
+    // Somebody may have stopped the robot: rule 7.
+    commands_.restore({.stops = {{StopLatches::kOthers, Id{}}}}, {}, started_);
+    behaviour_.restore({}, true, false, context_.instances == 1);
+    return;
+  }
   const Snapshot& s = *context_.restored.snapshot;
   commands_.restore(s.authority, s.answers,
                     started_);  // listen_first() checks which stations were heard since.

@@ -23,7 +23,8 @@ void Notices::to_holder(Severity severity, const std::string& code, Reason reaso
 void Notices::restored(const Restored& found, bool same_boot) const {
   if (found.lost)
     to_all(Severity::error, "state_lost", Reason::cannot_read,
-           robot_ + " started and holds: its state was lost (" + found.text + ")");
+           robot_ + " started and holds, stopped: its state was lost (" + found.text +
+               "), and with it any stop; check that it may move, then: reset " + robot_ + " --override");
   else if (found.snapshot)
     to_all(Severity::warning, "restarted", Reason::none,
            robot_ + " was restarted: " + describe(*found.snapshot) +

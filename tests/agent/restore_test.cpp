@@ -336,6 +336,24 @@ TEST_F(Restore, AFullDiskIsReportedAndCommandsAreStillExecuted) {
   EXPECT_THAT(op1->notice_codes(), Contains("state_lost"));
 }
 
+// Rule 7: a stop before the loss must not be lost with it.
+TEST_F(Restore, AfterALostStateTheRobotIsStoppedUntilAReset) {
+  ASSERT_EQ(bench->ask(*op2, CMD_STOP), Reason::none);
+  disk->set_full(true);
+  ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);  // The state can no longer be written.
+  crash();
+  bench->run(2s);
+  ASSERT_THAT(op1->notice_codes(), Contains("state_lost"));
+  EXPECT_TRUE(op1->behaviour.stopped());
+  disk->set_full(false);
+  EXPECT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
+  EXPECT_EQ(bench->ask(*op1, CMD_GOTO, "", 30, 0), Reason::stopped);
+  bench->run(1s);
+  EXPECT_THAT(bench->commands, only_zero());
+  EXPECT_EQ(bench->ask(*op1, CMD_RESET, "", 0, 0, true), Reason::none);
+  EXPECT_EQ(bench->ask(*op1, CMD_GOTO, "", 30, 0), Reason::none);
+}
+
 TEST_F(Restore, ACorruptStateIsHoldWithoutHolder) {
   take_lock_and_go();
   for (const store::Bytes& junk : {store::Bytes{}, store::Bytes(300, 0), store::Bytes(300, 'j')}) {
