@@ -15,10 +15,12 @@ constexpr std::array kRows{
     AlertRow{"joystick_lost", act, Ends::by_hand, "", true},
     AlertRow{"driver_lost", act, Ends::goes_on, "", true},
     AlertRow{"lost", act, Ends::heard, "back", true},
+    AlertRow{"taken", act},
     AlertRow{"intruder", act},
     AlertRow{"name_in_use", act},
     AlertRow{"name_taken", act},
     AlertRow{"escalated", act, Ends::seen, "restarted"},
+    AlertRow{"radio_hangs", act},
     AlertRow{"rival_writer", act},
     AlertRow{"tilted", act, Ends::goes_on},
     AlertRow{"stop_not_acknowledged", act, Ends::seen, "stop_acknowledged"},
@@ -61,9 +63,9 @@ constexpr std::array kRows{
     AlertRow{"store_failing", soon, Ends::seen, "store_works"},
     AlertRow{"other_release", soon},
     AlertRow{"announcement_refused", soon},
+    AlertRow{"radio_refused", soon},
 
     // News.
-    AlertRow{"taken", know},
     AlertRow{"granted", know},
     AlertRow{"released", know},
     AlertRow{"mode_changed", know},

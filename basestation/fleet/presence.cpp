@@ -101,8 +101,25 @@ void Presence::announce_often() {
     timers_.push_back(strand_.after(delay, [this] { announce(); }));
 }
 
+void Presence::look_at_radio(const wire::WireCounters& counters) {
+  const auto say = [this](contract::Severity severity, const char* code, const std::string& text) {
+    fleet_.say({.severity = severity, .code = code, .text = command::clean(text, contract::kMaxText)},
+               strand_.now());
+  };
+  if (const std::string news = refusals_.told(counters.refused, strand_.now()); !news.empty())
+    say(contract::Severity::warning, "radio_refused", "this station refuses datagrams: " + news);
+  constexpr int kLooks = 3;  // A process that was stopped for a while hangs at the first look alone.
+  receiver_hangs_ = counters.receiving > kReportPeriod ? receiver_hangs_ + 1 : 0;
+  if (receiver_hangs_ == kLooks)
+    say(contract::Severity::error, "radio_hangs",
+        "a thread of this station that receives from the radio hangs: no answer arrives; end the station and "
+        "start it again");
+}
+
 void Presence::report_traffic() {
-  contract::LinkReport report = meter_.read(params_.name, radio_.counters(), radio_.sender(), strand_.now());
+  const wire::WireCounters counters = radio_.counters();
+  look_at_radio(counters);
+  contract::LinkReport report = meter_.read(params_.name, counters, radio_.sender(), strand_.now());
   fleet_.carried(radio_.peers(), strand_.now());
   radio::LinkReport sample = encode(report);
   sample.seq(++report_seq_);

@@ -5,6 +5,7 @@
 
 #include "basestation/fleet/fleet.hpp"
 #include "basestation/fleet/station_params.hpp"
+#include "core/contract/refusals.hpp"
 #include "core/contract/traffic_meter.hpp"
 #include "core/time/random.hpp"
 
@@ -32,6 +33,8 @@ class Presence {
   struct Topics;
   void announce();
   void report_traffic();
+  /// Reports what the radio refused, and a receiving thread that hangs.
+  void look_at_radio(const wire::WireCounters& counters);
 
   const StationParams& params_;
   Executor& strand_;
@@ -40,6 +43,8 @@ class Presence {
   Random& random_;
   bool up_{true};
   contract::TrafficMeter meter_{};
+  contract::RefusalNews refusals_{};
+  int receiver_hangs_{};
   std::uint32_t presence_seq_{};
   std::uint64_t report_seq_{};
   std::unique_ptr<Topics> topics_;

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
+
+#include "core/contract/refusals.hpp"
 
 namespace adit::contract {
 namespace {
@@ -48,6 +51,13 @@ LinkReport TrafficMeter::read(const std::string& agent, const wire::WireCounters
     report.topics.push_back({topic, rate(sum.bytes_out, was.bytes_out),
                              rate(sum.samples_out, was.samples_out), rate(sum.bytes_in, was.bytes_in),
                              rate(sum.samples_in, was.samples_in), bounded(sum.dropped)});
+  }
+  // Below the topics, as far as there is room: a row that counts, by reason, what was refused before it could
+  // be assigned to a topic.
+  const std::uint64_t refused = std::accumulate(counters.refused.begin(), counters.refused.end(), 0ULL);
+  if (refused > 0) {
+    if (report.topics.size() >= LinkReport::kMaxTopics) report.topics.resize(LinkReport::kMaxTopics - 1);
+    report.topics.push_back({.topic = "refused: " + describe(counters.refused), .dropped = bounded(refused)});
   }
   std::uint64_t malformed = 0;
   for (const wire::TopicCount& row : counters.topics) malformed += row.malformed;

@@ -79,11 +79,32 @@ struct TopicCount {
   std::uint64_t overwritten{};  ///< Samples replaced by a newer one before the reader's strand took them.
 };
 
+/// Why a datagram was refused before anything of it was processed (core/wire/fastdds/rtps_guard.hpp).
+enum class Refusal : std::uint8_t {
+  malformed,    ///< Lengths, kinds or fields that do not fit.
+  number_jump,  ///< A sequence number far from the ones before.
+  sample_size,  ///< A sample larger than any topic of the receiver allows.
+  forged,       ///< In the name of a participant that sends from another socket.
+  foreign,      ///< Discovery data about another participant, or with addresses of others alone.
+  too_many,     ///< More participants, endpoints or writers than are stored.
+  rationed,     ///< Not sent, as the participant has never answered.
+};
+inline constexpr std::size_t kRefusals = 7;
+using RefusalCounts = std::array<std::uint64_t, kRefusals>;
+/// Name of a refusal for people.
+inline const char* to_string(Refusal refusal) {
+  constexpr std::array<const char*, kRefusals> names{"malformed", "number jump", "sample size", "forged",
+                                                     "foreign",   "too many",    "rationed"};
+  return names[static_cast<std::size_t>(refusal)];
+}
+
 /// Traffic of a participant since its start.
 struct WireCounters {
   std::vector<TopicCount> topics{};               ///< Sorted by topic, then peer.
   std::uint64_t discovery_out{}, discovery_in{};  ///< Bytes of discovery and liveliness traffic.
   std::uint64_t total_out{}, total_in{};          ///< Bytes of all traffic.
+  RefusalCounts refused{};                        ///< Datagrams, by Refusal.
+  Duration receiving{};  ///< For how long the longest datagram in work has been processed; mostly 0.
 };
 
 /// One participant on one domain: creates writers and readers, reports other participants, and counts

@@ -6,6 +6,7 @@
 #include <deque>
 
 #include "adit/robot.h"
+#include "core/contract/refusals.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 
@@ -34,6 +35,7 @@ class AgentSupervisor::Impl {
                      [this](const std::string& why) { escalate(why); }, [this](Time now) { looked(now); }}) {}
 
   Result<void> open(wire::Participant& radio, wire::Participant& robot) {
+    radio_ = &radio;
     auto health = wire::Writer<radio::Health>::make(radio, wire::topics::kHealth);
     if (!health) return health.error();
     health_ = std::move(*health);
@@ -129,7 +131,30 @@ class AgentSupervisor::Impl {
     while (!unsaid_.empty() && notifier_.try_send(unsaid_.front())) unsaid_.pop_front();
   }
 
+  /// Reports what the radio refused, and ends the process when a thread that receives hangs: nothing arrives
+  /// any more then, not even a stop.
+  void look_at_radio(Time now) {
+    if (now - looked_at_radio_ < kRadioPeriod) return;
+    looked_at_radio_ = now;
+    const wire::WireCounters counters = radio_->counters();
+    receiver_hangs_ = counters.receiving > kReceiverHangs ? receiver_hangs_ + 1 : 0;
+    // A process that was stopped for a while hangs at the first look alone.
+    if (receiver_hangs_ == 3) {
+      const std::string why = "a thread that receives from the radio has hung for " +
+                              std::to_string(counters.receiving / 1s) + " s";
+      report_escalated(why);
+      escalate(why);
+    }
+    const std::string told = refusals_.told(counters.refused, now);
+    if (told.empty()) return;
+    const std::string text =
+        "datagrams that were refused since the start: " + contract::describe(counters.refused);
+    note({.name = "radio", .state = PartState::up, .healthy = true, .automatic = true, .text = text}, {});
+    say(Severity::warning, "radio_refused", params_.robot + " refuses datagrams: " + told);
+  }
+
   void looked(Time now) {
+    look_at_radio(now);
     const PartStatus& command = supervisor_.status().front();
     const bool commands = command.state == PartState::up && command.silent <= kCommandSilent;
     const bool ends = supervisor_.escalated() || ending_.active();
@@ -144,10 +169,16 @@ class AgentSupervisor::Impl {
     (void)health_.write(sample);
   }
 
+  static constexpr Duration kRadioPeriod = 1s, kReceiverHangs = 5s;
+
   AgentSupervisorParams params_;
   Executor& strand_;
   Notifier& notifier_;
   Supervisor supervisor_;
+  wire::Participant* radio_{};
+  Time looked_at_radio_{};
+  int receiver_hangs_{};
+  contract::RefusalNews refusals_{};
   wire::Writer<radio::Health> health_{};
   VelocityWriter zero_{};
   std::vector<PartSpec> specs_{};  // Constant after the start: read from any thread.

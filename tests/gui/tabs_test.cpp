@@ -200,7 +200,7 @@ TEST_F(TabsTest, ANoteIsTypedWithoutGivingCommands) {
 
 TEST_F(TabsTest, TheLogIsFiltered) {
   control.add_notice(blocked_notice());
-  control.add_notice({{.code = "taken", .text = "taken by op2", .robot = "r3"}});
+  control.add_notice({{.code = "granted", .text = "granted by op2", .robot = "r3"}});
   control.add_command(
       {.id = 1, .ended = true, .line = "mode r1 explore", .mine = true, .text = "r1: exploring\n"});
   const auto lines = [&] { return column(control.tabs()->log()->lines(), 4); };
@@ -214,11 +214,11 @@ TEST_F(TabsTest, TheLogIsFiltered) {
   ASSERT_EQ(lines().size(), 1);
   EXPECT_TRUE(lines()[0].startsWith("mode r1 explore"));
   control.select("r3", false);
-  EXPECT_EQ(lines(), QStringList{"taken by op2"});
+  EXPECT_EQ(lines(), QStringList{"granted by op2"});
   touch(middle("logSelected"));
   click(middle("logText"));
   type("OP2");
-  EXPECT_EQ(lines(), QStringList{"taken by op2"});
+  EXPECT_EQ(lines(), QStringList{"granted by op2"});
   EXPECT_THAT(sink.lines, IsEmpty());
   QTest::keyClick(window(), Qt::Key_F2);  // A field that is not seen any more takes no keys.
   settle();

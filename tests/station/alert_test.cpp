@@ -153,6 +153,16 @@ TEST_F(AlertQueueTest, ARobotThatAnotherOperatorTookNeedsNothingHere) {
   EXPECT_TRUE(shown().empty());
 }
 
+TEST_F(AlertQueueTest, ARobotThatWasTakenAwayIsUrgentUntilItWasSeen) {
+  r(1).mine = false;
+  r(1).holder = "op2";
+  say("r2", "idle");
+  EXPECT_EQ(say("r1", "taken"), Priority::act);
+  EXPECT_EQ(say("r3", "released"), Priority::know) << "it was given away";
+  pass(60.0);
+  EXPECT_THAT(shown(), ElementsAre("taken r1", "idle r2"));
+}
+
 TEST_F(AlertQueueTest, EndsWhenItsCauseIsGone) {
   r(1).reason = Reason::blocked;
   say("r1", "blocked");

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "core/wire/fastdds/filtering_transport.hpp"
-#include "core/wire/fastdds/rtps_guard.hpp"
 #include "core/wire/fastdds/rtps_peek.hpp"
+#include "core/wire/fastdds/udp_sender.hpp"
 #include "tests/live/process.hpp"
 
 namespace adit::wire {
@@ -128,35 +128,6 @@ TEST(RtpsPeek, StatisticsAreCutFromFastDdsMessagesAlone) {
   for (std::size_t n = 0; n < 80; ++n) EXPECT_EQ(without_statistics(std::span(m).first(n)), n);
 }
 
-TEST(RtpsGuard, RemovesSubmessagesOfVendorsWhereverTheyAre) {
-  const auto passed = [](const Bytes& m) {
-    Bytes copy;
-    const auto result = without_vendor_kinds(m, copy);
-    return Bytes(result.begin(), result.end());
-  };
-  const Bytes first = heartbeat(1, 5, 1), second = heartbeat(2, 6, 2), time{0x09}, vendor{0xff, 1, 2, 3, 4};
-  const Bytes both = message({first, second});
-  EXPECT_EQ(passed(both), both);
-  EXPECT_EQ(passed(message({first, second, statistics()})), both);
-  EXPECT_EQ(passed(message({statistics(), first, second})), both);
-  EXPECT_EQ(passed(message({vendor, first, statistics(), second, vendor})), both);
-  // An empty timestamp is not the last submessage, as an empty one of other kinds is.
-  EXPECT_EQ(passed(message({time, statistics(), first})), message({time, first}));
-  EXPECT_EQ(passed(message({statistics()})), message({}));
-}
-
-TEST(RtpsGuard, DropsWhatParsersReadDifferently) {
-  Bytes copy;
-  const Bytes header = message({});
-  for (std::size_t n = 0; n < header.size(); ++n)
-    EXPECT_TRUE(without_vendor_kinds(std::span(header).first(n), copy).empty());
-  EXPECT_TRUE(without_vendor_kinds(message({Bytes(6, 0x07), heartbeat(1, 5, 1)}), copy).empty());
-  // Nothing is read beyond the end, and a truncated submessage is removed.
-  const Bytes cut = message({heartbeat(1, 5, 1), heartbeat(1, 6, 2)});
-  for (std::size_t n = 52; n < cut.size(); ++n)
-    EXPECT_EQ(without_vendor_kinds(std::span(cut).first(n), copy).size(), 52U);
-}
-
 TEST(HeartbeatFilter, LimitsTheRateOfUnchangedHeartbeats) {
   HeartbeatFilter filter(200ms);
   const auto passes = [&](const Bytes& m, std::uint16_t port, Duration at) {
@@ -232,13 +203,18 @@ class Receiver {
 };
 
 const in_addr_t kLoopback = htonl(INADDR_LOOPBACK);
-const std::vector<std::string> kInterfaces{"127.0.0.1"};
+LinkShaper::Socket udp() {
+  return [sender = std::make_shared<const UdpSender>(std::vector<std::string>{"127.0.0.1"})](
+             auto message, in_addr_t address, std::uint16_t port) {
+    return sender->send(message, address, port);
+  };
+}
 
 TEST(LinkShaper, SendsByPriorityAndTheNewestOfAStream) {
   Receiver receiver;
   std::atomic<int> sent{0};
   // 69 B and 28 of headers: 160 ms each.
-  LinkShaper link(LinkProfile{.bandwidth = 3500, .latency = 0, .queue = 8}, 1, kInterfaces,
+  LinkShaper link(LinkProfile{.bandwidth = 3500, .latency = 0, .queue = 8}, 1, udp(),
                   {[&](auto, in_addr_t, std::uint16_t) { ++sent; }, {}});
   link.add_writer(0x103, 0, false);
   link.add_writer(0x203, 3, true);
@@ -258,7 +234,7 @@ TEST(LinkShaper, SendsByPriorityAndTheNewestOfAStream) {
 
 TEST(LinkShaper, CountsQueuedAndDroppedMessagesByClass) {
   Receiver receiver;
-  LinkShaper link(LinkProfile{.bandwidth = 1e3, .latency = 0, .queue = 10}, 1, kInterfaces, {});
+  LinkShaper link(LinkProfile{.bandwidth = 1e3, .latency = 0, .queue = 10}, 1, udp(), {});
   link.add_writer(0x203, 3, true);
   for (int i = 0; i < 4; ++i) link.send(rtps(0x15, 0x203), kLoopback, receiver.port);
   link.send(rtps(0x15, 0x303), kLoopback, receiver.port);  // of no writer that it knows: as discovery
@@ -274,7 +250,7 @@ TEST(LinkShaper, CountsQueuedAndDroppedMessagesByClass) {
 TEST(LinkShaper, BeyondTheRangeNothingArrives) {
   Receiver receiver;
   std::optional<double> metres{};
-  LinkShaper link(LinkProfile{.bandwidth = 1e6, .latency = 0, .range = 50}, 1, kInterfaces,
+  LinkShaper link(LinkProfile{.bandwidth = 1e6, .latency = 0, .range = 50}, 1, udp(),
                   {{}, [&](in_addr_t, std::uint16_t) {
                      return Path{metres, 0.0};
                    }});
@@ -288,7 +264,7 @@ TEST(LinkShaper, BeyondTheRangeNothingArrives) {
 
 TEST(LinkShaper, SendsAQueuedRepairOnce) {
   Receiver receiver;
-  LinkShaper link(LinkProfile{.bandwidth = 3500, .latency = 0, .queue = 8}, 1, kInterfaces, {});
+  LinkShaper link(LinkProfile{.bandwidth = 3500, .latency = 0, .queue = 8}, 1, udp(), {});
   for (int i = 0; i < 10; ++i) {
     for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x3c2, tag), kLoopback, receiver.port);
   }
@@ -351,11 +327,11 @@ TEST(LinkShaper, DropsAndCountsDatagramsRefusedForTooLong) {
 TEST(LinkShaper, LosesDropsAndCounts) {
   Receiver receiver;
   {
-    LinkShaper all(LinkProfile{.bandwidth = 1e6, .loss = 1.0}, 1, kInterfaces, {});
+    LinkShaper all(LinkProfile{.bandwidth = 1e6, .loss = 1.0}, 1, udp(), {});
     all.send(rtps(0x15, 1), kLoopback, receiver.port);
     EXPECT_TRUE(receiver.tags(0, 50).empty());
   }
-  LinkShaper slow(LinkProfile{.bandwidth = 1e3, .queue = 0.01}, 1, kInterfaces, {});
+  LinkShaper slow(LinkProfile{.bandwidth = 1e3, .queue = 0.01}, 1, udp(), {});
   for (std::uint8_t i = 0; i < 5; ++i) slow.send(rtps(0x15, 1, i), kLoopback, receiver.port);
   slow.close();
   slow.send(rtps(0x15, 1), kLoopback, receiver.port);
@@ -366,7 +342,7 @@ TEST(LinkShaper, LosesDropsAndCounts) {
 TEST(LinkShaper, SendsItsQueueBeforeItEnds) {
   Receiver receiver;
   {
-    LinkShaper link(LinkProfile{.bandwidth = 1e6, .latency = 0.1}, 1, kInterfaces, {});
+    LinkShaper link(LinkProfile{.bandwidth = 1e6, .latency = 0.1}, 1, udp(), {});
     for (std::uint8_t i = 0; i < 10; ++i) link.send(rtps(0x15, 1, i), kLoopback, receiver.port);
   }
   EXPECT_EQ(receiver.tags(10, 10).size(), 10U);

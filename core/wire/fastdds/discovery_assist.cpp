@@ -157,6 +157,11 @@ void DiscoveryAssist::repeat(Duration now, bool link_idle, const Send& send) {
   for (const Out& one : out) send(one.message, one.address, one.port);
 }
 
+ParticipantId DiscoveryAssist::own() const {
+  const std::lock_guard lock(mutex_);
+  return own_;
+}
+
 bool DiscoveryAssist::is_own(const ParticipantId& id) const {
   const std::lock_guard lock(mutex_);
   return id == own_;

@@ -18,6 +18,7 @@
 #include "core/wire/fastdds/link_shaper.hpp"
 #include "core/wire/fastdds/participant_qos.hpp"
 #include "core/wire/fastdds/subnets.hpp"
+#include "core/wire/fastdds/udp_sender.hpp"
 #include "core/wire/known_topics.hpp"
 
 namespace adit::wire {
@@ -152,13 +153,23 @@ class FastDdsParticipant final : public Participant {
     const std::vector<std::string> loopback{"127.0.0.1"};
     const auto& interfaces = params.interfaces.empty() ? loopback : params.interfaces;
     for (const std::string& address : interfaces) context_->own_addresses.insert(inet_addr(address.c_str()));
-    context_->assist.set_reachable([networks = Subnets(interfaces, params.peers)](in_addr_t address) {
-      return networks.contains(address);
-    });
+    const auto networks = std::make_shared<const Subnets>(interfaces, params.peers);
+    context_->assist.set_reachable([networks](in_addr_t address) { return networks->contains(address); });
     if (!params.large_samples) {
       context_->udp_sender = std::make_shared<UdpSender>(interfaces);
+      const auto radio = std::make_shared<const UdpSender>(interfaces);
+      context_->guard.set({true, [networks](in_addr_t address) { return networks->contains(address); },
+                           [networks](in_addr_t a, in_addr_t b) { return networks->share(a, b); },
+                           [context = context_.get(), ours = radio->port(),
+                            to_us = context_->udp_sender->port()](auto source) {
+                             return (source.port == ours || source.port == to_us) &&
+                                    context->own_addresses.contains(source.address);
+                           }});
       context_->link = std::make_shared<LinkShaper>(
-          params.link, params.link_seed, interfaces,
+          params.link, params.link_seed,
+          [radio](auto message, in_addr_t address, std::uint16_t port) {
+            return radio->send(message, address, port);
+          },
           LinkShaper::Outputs{
               [context = context_.get()](auto message, in_addr_t address, std::uint16_t port) {
                 context->sent(message, address, port);
@@ -230,6 +241,8 @@ class FastDdsParticipant final : public Participant {
     result.discovery_in = context_->discovery_in;
     result.total_out = context_->total_out;
     result.total_in = context_->total_in;
+    result.refused = context_->guard.refused();
+    result.receiving = context_->receive_watch.longest(std::chrono::steady_clock::now().time_since_epoch());
     return result;
   }
 
@@ -247,6 +260,7 @@ class FastDdsParticipant final : public Participant {
  private:
   Result<dds::Topic*> topic_of(const TopicInfo& topic) {
     if (const auto allowed = known_.add(topic); !allowed) return allowed.error();
+    context_->guard.admit_samples(topic.max_bytes);
     dds::Topic*& known = topics_[topic.name];
     if (known != nullptr) return known;
     dds::TypeSupport type(new BytesType(topic.type, topic.keyed, topic.max_bytes));

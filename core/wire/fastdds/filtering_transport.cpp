@@ -4,16 +4,36 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <fastdds/rtps/common/LocatorList.hpp>
 
+#include <algorithm>
 #include <cstring>
 
 #include "core/wire/cost.hpp"
 #include "core/wire/fastdds/link_shaper.hpp"
 #include "core/wire/fastdds/ports.hpp"
-#include "core/wire/fastdds/rtps_guard.hpp"
 #include "core/wire/fastdds/rtps_peek.hpp"
 
 namespace adit::wire {
 namespace rtps = eprosima::fastrtps::rtps;
+
+ReceiveWatch::Mark::Mark(ReceiveWatch& watch, Duration now) {
+  for (auto& slot : watch.since_) {
+    Duration::rep free = 0;
+    if (!slot.compare_exchange_strong(free, std::max<Duration::rep>(now.count(), 1))) continue;
+    slot_ = &slot;
+    return;
+  }
+}
+
+ReceiveWatch::Mark::~Mark() {
+  if (slot_ != nullptr) slot_->store(0);
+}
+
+Duration ReceiveWatch::longest(Duration now) const {
+  Duration longest{};
+  for (const auto& slot : since_)
+    if (const Duration since{slot.load()}; since != Duration{}) longest = std::max(longest, now - since);
+  return longest;
+}
 
 void TransportContext::sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
   const std::uint64_t bytes = message.size() + WireCost::kUdpAndIp;
@@ -22,13 +42,14 @@ void TransportContext::sent(std::span<const std::uint8_t> message, in_addr_t add
   peers.sent(peek(message), address, port, bytes);
 }
 
-void TransportContext::received(std::span<const std::uint8_t> message, std::uint32_t port) {
-  const RtpsPeek seen = peek(message);
+void TransportContext::received(std::span<const std::uint8_t> message, std::span<const std::uint8_t> passed,
+                                std::uint32_t port) {
+  const RtpsPeek seen = peek(passed);
   if (seen.source && assist.is_own(*seen.source)) return;  // The datagram did not come by radio.
   const std::uint64_t bytes = message.size() + WireCost::kUdpAndIp;
   total_in.fetch_add(bytes, std::memory_order_relaxed);
   if (is_discovery_port(port)) discovery_in.fetch_add(bytes, std::memory_order_relaxed);
-  peers.received(seen, bytes);
+  peers.received(seen, bytes);  // A refused one counts for no participant.
 }
 
 FilteringTransport::FilteringTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
@@ -62,6 +83,7 @@ void FilteringTransport::send(std::span<const std::uint8_t> message, in_addr_t a
   message = message.first(without_statistics(message));
   if (context_->is_own(address, port)) return (void)context_->udp_sender->send(message, address, port);
   const Duration now = std::chrono::steady_clock::now().time_since_epoch();
+  if (!context_->guard.may_send(address, port, message.size() + WireCost::kUdpAndIp, now)) return;
   std::vector<std::uint8_t> changed;
   if (is_discovery_port(port)) {
     changed.assign(message.begin(), message.end());
@@ -105,16 +127,21 @@ void FilteringTransport::receive(eprosima::fastdds::rtps::TransportReceiverInter
                                  const rtps::Locator_t& local_locator,
                                  const rtps::Locator_t& remote_locator) {
   const std::uint16_t port = rtps::IPLocator::getPhysicalPort(local_locator);
-  context_->received({receive_buffer, receive_buffer_size}, port);
+  const Duration now = std::chrono::steady_clock::now().time_since_epoch();
+  const ReceiveWatch::Mark mark(context_->receive_watch, now);
+  RtpsGuard::Source source{};
+  std::memcpy(&source.address, rtps::IPLocator::getIPv4(remote_locator), sizeof source.address);
+  source.port = rtps::IPLocator::getPhysicalPort(remote_locator);
+  std::vector<std::uint8_t> copy;
+  const auto message =
+      context_->guard.pass({receive_buffer, receive_buffer_size}, source, context_->assist.own(), now, copy);
+  context_->received({receive_buffer, receive_buffer_size}, message, port);
+  if (message.empty()) return;
   if (is_discovery_port(port)) {
-    context_->assist.received({receive_buffer, receive_buffer_size},
-                              std::chrono::steady_clock::now().time_since_epoch());
+    context_->assist.received(message, now);
     if (context_->repeats) context_->repeats->wake();
     context_->discovery_gate.wait();
   }
-  std::vector<std::uint8_t> copy;
-  const auto message = without_vendor_kinds({receive_buffer, receive_buffer_size}, copy);
-  if (message.empty()) return;
   next_receiver->OnDataReceived(message.data(), static_cast<std::uint32_t>(message.size()), local_locator,
                                 remote_locator);
 }

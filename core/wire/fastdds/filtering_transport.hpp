@@ -15,6 +15,7 @@
 #include "core/wire/fastdds/discovery_assist.hpp"
 #include "core/wire/fastdds/heartbeat_filter.hpp"
 #include "core/wire/fastdds/peer_statistics.hpp"
+#include "core/wire/fastdds/rtps_guard.hpp"
 #include "core/wire/fastdds/udp_sender.hpp"
 
 namespace adit::wire {
@@ -83,6 +84,27 @@ class EntitySet {
   std::array<std::atomic<std::uint32_t>, 64> entities_{};
 };
 
+/// Since when each receiving thread has been processing its datagram.
+class ReceiveWatch {
+ public:
+  /// Marks one datagram from its constructor to its destructor.
+  class Mark {
+   public:
+    Mark(ReceiveWatch& watch, Duration now);
+    ~Mark();
+    Mark(const Mark&) = delete;
+    Mark& operator=(const Mark&) = delete;
+
+   private:
+    std::atomic<Duration::rep>* slot_{};  // Null: more threads receive than there are slots.
+  };
+  /// How long the datagram that has been in work for longest has been; 0: none is.
+  Duration longest(Duration now) const;
+
+ private:
+  std::array<std::atomic<Duration::rep>, 16> since_{};  // 0: free.
+};
+
 /// State shared by the transports of one participant, including the byte counts of its sockets, UDP and IP
 /// headers included.
 struct TransportContext {
@@ -102,16 +124,20 @@ struct TransportContext {
   }
   HeartbeatFilter heartbeats{Discovery::kHeartbeat};
   DiscoveryAssist assist{};
+  RtpsGuard guard{};
+  ReceiveWatch receive_watch{};
   std::unique_ptr<DiscoveryAssistThread> repeats{};  ///< For a radio.
 
   /// Counts a sent datagram.
   void sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
-  /// Counts a datagram received on that port.
-  void received(std::span<const std::uint8_t> message, std::uint32_t port);
+  /// Counts a datagram received on that port. `passed`: what of it is processed.
+  void received(std::span<const std::uint8_t> message, std::span<const std::uint8_t> passed,
+                std::uint32_t port);
 };
 
 /// Transport between the RTPS library and UDP that every datagram passes in both directions. It counts
 /// datagrams, removes parts that are useless on a radio, and passes them to the link model if there is one.
+/// What arrives passes the guard first.
 ///
 /// The library matches a participant's readers with its own writers; this version cannot disable that. A
 /// sample that none of these readers must acknowledge is not sent to ourselves, which saves a system call and

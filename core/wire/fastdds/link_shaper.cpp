@@ -14,18 +14,7 @@ constexpr std::size_t kMaxWaiting = 4096;  // Datagrams; the maximum queue age l
 /// queue can be full while the socket's is not.
 constexpr Duration kRetry = 1ms;
 
-LinkShaper::Socket sockets_of(const std::vector<std::string>& interfaces) {
-  return [udp_sender = std::make_shared<UdpSender>(interfaces)](auto message, in_addr_t address,
-                                                                std::uint16_t port) {
-    return udp_sender->send(message, address, port);
-  };
-}
-
 }  // namespace
-
-LinkShaper::LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed,
-                       const std::vector<std::string>& interfaces, Outputs outputs)
-    : LinkShaper(std::move(link), seed, sockets_of(interfaces), std::move(outputs)) {}
 
 LinkShaper::LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed, Socket socket, Outputs outputs)
     : link_(std::move(link)), outputs_(std::move(outputs)), socket_(std::move(socket)), random_(seed) {

@@ -13,7 +13,6 @@
 #include <thread>
 #include <vector>
 
-#include "core/wire/fastdds/udp_sender.hpp"
 #include "core/wire/link/model.hpp"
 #include "core/wire/link/transmit_queue.hpp"
 #include "core/wire/link_state.hpp"
@@ -22,9 +21,9 @@ namespace adit::wire {
 
 /// The transmit queue between a participant and its sockets. With a link profile it is the link model:
 /// datagrams leave by priority, within their budget, at the link's bandwidth, and arrive late or are lost.
-/// Without one, datagrams go straight to the sockets; those that a socket has no room for, as when a real
-/// radio is full, are queued by priority and retried. It runs one thread and has its own sockets, so that it
-/// can still send queued datagrams while Fast DDS destroys the participant. All times are those of
+/// Without one, datagrams go straight to the socket; those that it has no room for, as when a real radio is
+/// full, are queued by priority and retried. It runs one thread, so that it can still send queued datagrams
+/// while Fast DDS destroys the participant. All times are those of
 /// std::chrono::steady_clock, since its epoch.
 class LinkShaper {
  public:
@@ -39,12 +38,9 @@ class LinkShaper {
   using Socket =
       std::function<bool(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port)>;
 
-  /// @param link        The link model's profile; unset: datagrams go straight to the sockets.
+  /// @param link        The link model's profile; unset: datagrams go straight to the socket.
   /// @param seed        Seed of the random losses and the jitter.
-  /// @param interfaces  IPv4 addresses of the interfaces on which multicast datagrams are sent.
-  LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed, const std::vector<std::string>& interfaces,
-             Outputs outputs);
-  /// Sends through `socket` instead of the shaper's own sockets; for tests.
+  /// @param socket      Sends what leaves the queue.
   LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed, Socket socket, Outputs outputs);
   ~LinkShaper();
   LinkShaper(const LinkShaper&) = delete;

@@ -5,35 +5,23 @@
 #include <cstring>
 
 #include "core/wire/cdr_key.hpp"
+#include "core/wire/fastdds/rtps_submessage.hpp"
 
 namespace adit::wire {
 namespace {
 
-using Message = std::span<const std::uint8_t>;
+using namespace rtps_bytes;
 
-constexpr std::size_t kHeader = 20;
-// RTPS 2.2, 8.3.7 and 9.4.5.
-constexpr std::uint8_t kAcknack = 0x06, kHeartbeat = 0x07, kGap = 0x08, kInfoTimestamp = 0x09,
-                       kInfoSource = 0x0c, kInfoDestination = 0x0e, kNackFrag = 0x12, kData = 0x15,
-                       kDataFrag = 0x16;
 // DDS Security 1.1, 7.3.6: SEC_BODY, SEC_PREFIX, SEC_POSTFIX, SRTPS_PREFIX, SRTPS_POSTFIX.
 constexpr std::uint8_t kFirstSecurity = 0x30, kLastSecurity = 0x34;
-constexpr std::uint8_t kWithQos = 2, kWithData = 4;  // Flags of DATA.
-constexpr std::uint16_t kSentinel = 1, kKeyHash = 0x70, kMetatrafficUnicast = 0x32;
 constexpr std::uint8_t kStatistics = 0x80;  // Of the vendor: 56 bytes.
 constexpr std::size_t kStatisticsSize = 60;
 constexpr std::uint8_t kEprosima[2] = {0x01, 0x0f};
 
-struct Submessage {
-  std::uint8_t kind{}, flags{};
-  bool little{};
-  Message body{};  // Without the submessage header.
-};
-
 /// Calls `see` for each complete submessage until it returns false.
 template <class See>
 void each(Message message, See see) {
-  if (message.size() < kHeader || std::memcmp(message.data(), "RTPS", 4) != 0) return;
+  if (!has_header(message)) return;
   std::size_t at = kHeader;
   while (at + 4 <= message.size()) {
     Submessage sub{message[at], message[at + 1], (message[at + 1] & 1) != 0, {}};
@@ -45,29 +33,6 @@ void each(Message message, See see) {
     if (!see(sub) || length == 0) return;
     at += 4 + length;
   }
-}
-
-ParticipantId prefix_at(const std::uint8_t* bytes) {
-  ParticipantId id{};
-  std::copy_n(bytes, id.size(), id.begin());
-  return id;
-}
-
-std::uint32_t entity(Message body, std::size_t at) {
-  return static_cast<std::uint32_t>(body[at]) << 24 | body[at + 1] << 16 | body[at + 2] << 8 | body[at + 3];
-}
-
-std::uint64_t word(const Submessage& sub, std::size_t at) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    value |= static_cast<std::uint64_t>(sub.body[at + i]) << 8 * (sub.little ? i : 3 - i);
-  }
-  return value;
-}
-
-/// RTPS sequence numbers are two 32-bit words, the high one first.
-std::uint64_t sequence(const Submessage& sub, std::size_t at) {
-  return word(sub, at) << 32 | word(sub, at + 4);
 }
 
 void mix(std::uint64_t& hash, std::uint64_t value) {
@@ -86,25 +51,6 @@ bool is_protected(Message message) {
     return !found;
   });
   return found;
-}
-
-/// Calls `see(id, value)` for each parameter of the list at `at` until it returns false. Returns the offset
-/// after the list; nothing when the list is truncated or `see` returned false.
-template <class See>
-std::optional<std::size_t> each_parameter(const Submessage& sub, std::size_t at, See see) {
-  const auto half = [&](std::size_t i) {
-    return static_cast<std::uint16_t>(sub.little ? sub.body[i] | sub.body[i + 1] << 8
-                                                 : sub.body[i + 1] | sub.body[i] << 8);
-  };
-  while (at + 4 <= sub.body.size()) {
-    const std::uint16_t id = half(at);
-    const std::size_t length = half(at + 2);
-    at += 4;
-    if (id == kSentinel) return at;
-    if (at + length > sub.body.size() || !see(id, sub.body.subspan(at, length))) return std::nullopt;
-    at += length;
-  }
-  return std::nullopt;
 }
 
 /// Adds the submessage to the hash. Returns false for a kind that it cannot read.
@@ -141,7 +87,7 @@ bool add_to_dedup_key(const Submessage& sub, std::uint64_t& hash) {
 
 RtpsPeek peek(Message message) {
   RtpsPeek result;
-  if (message.size() < kHeader || std::memcmp(message.data(), "RTPS", 4) != 0) return result;
+  if (!has_header(message)) return result;
   result.source = prefix_at(message.data() + 8);
   int samples = 0;
   bool has_dedup_key = true;
@@ -168,15 +114,14 @@ RtpsPeek peek(Message message) {
 }
 
 std::optional<std::uint64_t> sample_key(Message message) {
-  constexpr std::size_t fixed = 20;  // Before the parameters and the payload.
   std::optional<std::uint64_t> result;
   each(message, [&](const Submessage& sub) {
     if (sub.kind != kData) return true;
-    if (sub.body.size() < fixed) return false;
+    if (sub.body.size() < kDataFixed) return false;
     std::uint64_t hash = 0;
-    std::optional<std::size_t> payload = fixed;
+    std::optional<std::size_t> payload = kDataFixed;
     if ((sub.flags & kWithQos) != 0) {
-      payload = each_parameter(sub, fixed, [&](std::uint16_t id, Message value) {
+      payload = each_parameter(sub.body, kDataFixed, sub.little, [&](std::uint16_t id, Message value) {
         if (id != kKeyHash) return true;
         mix(hash, value);
         result = hash;
@@ -222,17 +167,18 @@ std::optional<LoneHeartbeat> lone_heartbeat(Message message) {
 }
 
 std::optional<PeerAddress> announced_address(Message message) {
-  constexpr std::size_t fixed = 20;  // Before the parameters.
   constexpr std::uint32_t udp_v4 = 1;
   std::optional<PeerAddress> result;
   each(message, [&](const Submessage& sub) {
-    if (sub.kind != kData || sub.body.size() < fixed || entity(sub.body, 8) != kAnnouncingWriter) return true;
+    if (sub.kind != kData || sub.body.size() < kDataFixed || entity(sub.body, 8) != kAnnouncingWriter)
+      return true;
     // Only little-endian parameter lists are read, as all known implementations send them.
     if (!sub.little || (sub.flags & kWithData) == 0) return false;
-    std::optional<std::size_t> at = fixed;
-    if ((sub.flags & kWithQos) != 0) at = each_parameter(sub, fixed, [](auto, auto) { return true; });
+    std::optional<std::size_t> at = kDataFixed;
+    if ((sub.flags & kWithQos) != 0)
+      at = each_parameter(sub.body, kDataFixed, sub.little, [](auto, auto) { return true; });
     if (!at || *at + 4 > sub.body.size() || sub.body[*at + 1] != 3) return false;  // PL_CDR_LE
-    each_parameter(sub, *at + 4, [&](std::uint16_t id, Message value) {
+    each_parameter(sub.body, *at + 4, sub.little, [&](std::uint16_t id, Message value) {
       const auto offset = static_cast<std::size_t>(value.data() - sub.body.data());
       if (id != kMetatrafficUnicast || value.size() < 24 || word(sub, offset) != udp_v4) return true;
       PeerAddress found;

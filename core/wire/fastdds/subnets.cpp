@@ -22,6 +22,14 @@ in_addr_t mask_of(in_addr_t address, const ifaddrs* interfaces) {
 
 }  // namespace
 
+in_addr_t network_mask(in_addr_t address) {
+  ifaddrs* own = nullptr;
+  if (::getifaddrs(&own) != 0) return INADDR_NONE;
+  const in_addr_t mask = mask_of(address, own);
+  ::freeifaddrs(own);
+  return mask;
+}
+
 Subnets::Subnets(const std::vector<std::string>& interfaces, const std::vector<std::string>& peers) {
   ifaddrs* own = nullptr;
   if (::getifaddrs(&own) != 0) own = nullptr;
@@ -37,6 +45,13 @@ Subnets::Subnets(const std::vector<std::string>& interfaces, const std::vector<s
 bool Subnets::contains(in_addr_t address) const {
   return std::any_of(networks_.begin(), networks_.end(), [address](const Network& network) {
     return (address & network.mask) == (network.address & network.mask);
+  });
+}
+
+bool Subnets::share(in_addr_t a, in_addr_t b) const {
+  return std::any_of(networks_.begin(), networks_.end(), [a, b](const Network& network) {
+    return (a & network.mask) == (network.address & network.mask) &&
+           (b & network.mask) == (network.address & network.mask);
   });
 }
 

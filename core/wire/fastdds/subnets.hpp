@@ -7,6 +7,9 @@
 
 namespace adit::wire {
 
+/// The network mask of an interface with that address, both in network order; all ones when there is none.
+in_addr_t network_mask(in_addr_t address);
+
 /// The IPv4 networks of the given interfaces, together with single addresses.
 class Subnets {
  public:
@@ -15,6 +18,8 @@ class Subnets {
   Subnets(const std::vector<std::string>& interfaces, const std::vector<std::string>& peers);
   /// `address` is in network order.
   bool contains(in_addr_t address) const;
+  /// Whether both addresses, in network order, are in the same one of these networks.
+  bool share(in_addr_t a, in_addr_t b) const;
 
  private:
   struct Network {
