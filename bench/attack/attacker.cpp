@@ -68,30 +68,25 @@ void Attacker::listen(int socket, std::atomic<std::uint64_t>& count, bool learns
 void Attacker::learn(const std::vector<std::uint8_t>& message) {
   if (!bytes::has_header(message)) return;
   const auto sender = bytes::prefix_at(message.data() + 8);
-  for (std::size_t at = bytes::kHeader; at + 4 <= message.size();) {
-    const bool little = (message[at + 1] & 1) != 0;
-    std::size_t length = bytes::half(message, at + 2, little);
-    if (length == 0 || at + 4 + length > message.size()) length = message.size() - at - 4;
-    const bytes::Message body = bytes::Message(message).subspan(at + 4, length);
-    if (message[at] == bytes::kHeartbeat && body.size() >= 28 && bytes::entity(body, 4) == kPublications) {
-      const bytes::Submessage sub{message[at], message[at + 1], little, body};
-      if (bytes::sequence(sub, 16) >= bytes::sequence(sub, 8))
-        request(sender, bytes::sequence(sub, 8), bytes::sequence(sub, 16));
-    }
-    if (message[at] == bytes::kData && body.size() > 24 && bytes::entity(body, 8) == kPublications &&
-        (message[at + 1] & bytes::kWithQos) == 0) {
-      std::uint32_t entity = 0;
-      std::string topic;
-      bytes::each_parameter(body, 24, little, [&](std::uint16_t parameter, bytes::Message value) {
-        if (parameter == bytes::kEndpointGuid) entity = bytes::entity(value, 12);
-        if (parameter == bytes::kTopicName) topic = reinterpret_cast<const char*>(value.data()) + 4;
-        return true;
-      });
-      const std::lock_guard lock(mutex_);
-      writers_[{sender, topic}] = entity;
-    }
-    at += 4 + length;
-  }
+  bytes::each_submessage(message, [&](const bytes::Submessage& sub) {
+    const bytes::Message body = sub.body;
+    if (sub.kind == bytes::kHeartbeat && body.size() >= 28 && bytes::entity(body, 4) == kPublications &&
+        bytes::sequence(sub, 16) >= bytes::sequence(sub, 8))
+      request(sender, bytes::sequence(sub, 8), bytes::sequence(sub, 16));
+    if (sub.kind != bytes::kData || body.size() <= 24 || bytes::entity(body, 8) != kPublications ||
+        (sub.flags & bytes::kWithQos) != 0)
+      return true;
+    std::uint32_t entity = 0;
+    std::string topic;
+    bytes::each_parameter(body, 24, sub.little, [&](std::uint16_t parameter, bytes::Message value) {
+      if (parameter == bytes::kEndpointGuid) entity = bytes::entity(value, 12);
+      if (parameter == bytes::kTopicName) topic = reinterpret_cast<const char*>(value.data()) + 4;
+      return true;
+    });
+    const std::lock_guard lock(mutex_);
+    writers_[{sender, topic}] = entity;
+    return true;
+  });
 }
 
 void Attacker::request(const wire::ParticipantId& from, std::uint64_t first, std::uint64_t last) {

@@ -29,7 +29,6 @@ class Attacker {
   Attacker& operator=(const Attacker&) = delete;
 
   const wire::ParticipantId& id() const { return id_; }
-  std::uint16_t port() const { return port_; }
   /// The unicast address at which it receives, as a locator.
   Bytes own_locator() const { return wire::test::locator("127.0.0.5", port_); }
   /// Announces itself.

@@ -6,7 +6,6 @@
 #include <optional>
 #include <random>
 
-#include "core/wire/fastdds/rtps_peek.hpp"
 #include "tests/wire/rtps_messages.hpp"
 
 namespace adit::wire {

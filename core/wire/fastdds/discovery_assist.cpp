@@ -6,8 +6,6 @@
 namespace adit::wire {
 namespace {
 
-// Entity ids of RTPS 2.2, 9.3.1.3.
-constexpr std::uint32_t kPublicationsWriter = 0x000003c2, kSubscriptionsWriter = 0x000004c2;
 // Interval between two unicast announcements to a peer that knows us.
 constexpr Duration kUnicastInterval = 20s;
 constexpr int kRepeats = 3;            // Repetitions of a heartbeat until the library sends the next one.
@@ -160,11 +158,6 @@ void DiscoveryAssist::repeat(Duration now, bool link_idle, const Send& send) {
 ParticipantId DiscoveryAssist::own() const {
   const std::lock_guard lock(mutex_);
   return own_;
-}
-
-bool DiscoveryAssist::is_own(const ParticipantId& id) const {
-  const std::lock_guard lock(mutex_);
-  return id == own_;
 }
 
 Duration DiscoveryAssist::next() const {

@@ -46,8 +46,6 @@ class DiscoveryAssist {
   void repeat(Duration now, bool link_idle, const Send& send);
   /// The participant that sends from here; all zero before its first datagram.
   ParticipantId own() const;
-  /// Whether `id` is the participant that sends from here.
-  bool is_own(const ParticipantId& id) const;
   /// Time at which repeat() must be called next; max: not before the next datagram.
   Duration next() const;
 

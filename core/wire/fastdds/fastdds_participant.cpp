@@ -154,11 +154,12 @@ class FastDdsParticipant final : public Participant {
     const auto& interfaces = params.interfaces.empty() ? loopback : params.interfaces;
     for (const std::string& address : interfaces) context_->own_addresses.insert(inet_addr(address.c_str()));
     const auto networks = std::make_shared<const Subnets>(interfaces, params.peers);
-    context_->assist.set_reachable([networks](in_addr_t address) { return networks->contains(address); });
+    const auto reachable = [networks](in_addr_t address) { return networks->contains(address); };
+    context_->assist.set_reachable(reachable);
     if (!params.large_samples) {
       context_->udp_sender = std::make_shared<UdpSender>(interfaces);
       const auto radio = std::make_shared<const UdpSender>(interfaces);
-      context_->guard.set({true, [networks](in_addr_t address) { return networks->contains(address); },
+      context_->guard.set({true, reachable,
                            [networks](in_addr_t a, in_addr_t b) { return networks->share(a, b); },
                            [context = context_.get(), ours = radio->port(),
                             to_us = context_->udp_sender->port()](auto source) {

@@ -43,9 +43,9 @@ void TransportContext::sent(std::span<const std::uint8_t> message, in_addr_t add
 }
 
 void TransportContext::received(std::span<const std::uint8_t> message, std::span<const std::uint8_t> passed,
-                                std::uint32_t port) {
+                                const ParticipantId& own, std::uint32_t port) {
   const RtpsPeek seen = peek(passed);
-  if (seen.source && assist.is_own(*seen.source)) return;  // The datagram did not come by radio.
+  if (seen.source == own) return;  // The datagram did not come by radio.
   const std::uint64_t bytes = message.size() + WireCost::kUdpAndIp;
   total_in.fetch_add(bytes, std::memory_order_relaxed);
   if (is_discovery_port(port)) discovery_in.fetch_add(bytes, std::memory_order_relaxed);
@@ -133,9 +133,9 @@ void FilteringTransport::receive(eprosima::fastdds::rtps::TransportReceiverInter
   std::memcpy(&source.address, rtps::IPLocator::getIPv4(remote_locator), sizeof source.address);
   source.port = rtps::IPLocator::getPhysicalPort(remote_locator);
   std::vector<std::uint8_t> copy;
-  const auto message =
-      context_->guard.pass({receive_buffer, receive_buffer_size}, source, context_->assist.own(), now, copy);
-  context_->received({receive_buffer, receive_buffer_size}, message, port);
+  const ParticipantId own = context_->assist.own();
+  const auto message = context_->guard.pass({receive_buffer, receive_buffer_size}, source, own, now, copy);
+  context_->received({receive_buffer, receive_buffer_size}, message, own, port);
   if (message.empty()) return;
   if (is_discovery_port(port)) {
     context_->assist.received(message, now);

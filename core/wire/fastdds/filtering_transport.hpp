@@ -130,9 +130,9 @@ struct TransportContext {
 
   /// Counts a sent datagram.
   void sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
-  /// Counts a datagram received on that port. `passed`: what of it is processed.
+  /// Counts a datagram received on that port. `passed`: what of it is processed; `own`: this participant.
   void received(std::span<const std::uint8_t> message, std::span<const std::uint8_t> passed,
-                std::uint32_t port);
+                const ParticipantId& own, std::uint32_t port);
 };
 
 /// Transport between the RTPS library and UDP that every datagram passes in both directions. It counts

@@ -22,8 +22,7 @@ constexpr std::size_t kGuid = 16, kLocator = 24, kMaxBits = 256, kMaxLocators = 
 constexpr std::uint32_t kSampleMargin = 16;
 
 // Entity ids of RTPS 2.2, 9.3.1.3.
-constexpr std::uint32_t kPublicationsWriter = 0x000003c2, kSubscriptionsWriter = 0x000004c2,
-                        kAnnouncingReader = 0x000100c7, kPublicationsReader = 0x000003c7,
+constexpr std::uint32_t kAnnouncingReader = 0x000100c7, kPublicationsReader = 0x000003c7,
                         kSubscriptionsReader = 0x000004c7;
 
 /// Writer of the discovery data that this reader reads; 0: it reads other data.
@@ -34,10 +33,6 @@ std::uint32_t discovery_writer(std::uint32_t reader) {
 }
 bool is_discovery_writer(std::uint32_t writer) {
   return writer == kAnnouncingWriter || writer == kPublicationsWriter || writer == kSubscriptionsWriter;
-}
-
-std::uint64_t key(in_addr_t address, std::uint16_t port) {
-  return static_cast<std::uint64_t>(address) << 16 | port;
 }
 
 /// Whether the set of numbers at `at`, behind its base, fits: a count of bits, its words, and `after` bytes.
@@ -468,8 +463,7 @@ std::optional<Refusal> RtpsGuard::Reading::admit() {
       const auto& theirs = entry.second.locators;
       return entry.second.answered && std::find(theirs.begin(), theirs.end(), locator) != theirs.end();
     });
-    if (!peer_->answered && !used)
-      guard_.unanswered_.try_emplace(key(locator.address, locator.port), sender_);
+    if (!peer_->answered && !used) guard_.unanswered_.try_emplace(locator, sender_);
   }
   peer_->locators = locators_;
   return {};
@@ -529,7 +523,7 @@ void RtpsGuard::Reading::edit(const std::uint8_t* where, std::array<std::uint8_t
 }
 
 void RtpsGuard::drop_locators(const Peer& peer) {
-  for (const Source& locator : peer.locators) unanswered_.erase(key(locator.address, locator.port));
+  for (const Source& locator : peer.locators) unanswered_.erase(locator);
 }
 
 void RtpsGuard::forget(Peers::iterator peer) {
@@ -562,7 +556,7 @@ std::span<const std::uint8_t> RtpsGuard::pass(std::span<const std::uint8_t> mess
 
 bool RtpsGuard::may_send(in_addr_t address, std::uint16_t port, std::uint64_t bytes, Duration now) {
   const std::lock_guard lock(mutex_);
-  const auto known = unanswered_.find(key(address, port));
+  const auto known = unanswered_.find({address, port});
   if (known == unanswered_.end()) return true;
   Peer& peer = peers_.at(known->second);
   const auto seconds = static_cast<std::uint64_t>((now - peer.met) / 1s);

@@ -59,7 +59,7 @@ class RtpsGuard {
   struct Source {
     in_addr_t address{};  ///< In network order.
     std::uint16_t port{};
-    bool operator==(const Source&) const = default;
+    auto operator<=>(const Source&) const = default;
   };
   struct Settings {
     bool radio{};  ///< Whether participants are bound to their sockets.
@@ -131,8 +131,8 @@ class RtpsGuard {
   Settings settings_{};
   mutable std::mutex mutex_{};
   Peers peers_{};
-  std::map<std::uint64_t, ParticipantId> unanswered_{};  ///< By locator, the peers that have not answered.
-  std::uint32_t largest_{64 << 10};                      ///< Of a sample, bytes; less is no danger.
+  std::map<Source, ParticipantId> unanswered_{};  ///< By locator, the peers that have not answered.
+  std::uint32_t largest_{64 << 10};               ///< Of a sample, bytes; less is no danger.
   RefusalCounts refused_{};
 };
 

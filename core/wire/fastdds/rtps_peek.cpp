@@ -18,23 +18,6 @@ constexpr std::uint8_t kStatistics = 0x80;  // Of the vendor: 56 bytes.
 constexpr std::size_t kStatisticsSize = 60;
 constexpr std::uint8_t kEprosima[2] = {0x01, 0x0f};
 
-/// Calls `see` for each complete submessage until it returns false.
-template <class See>
-void each(Message message, See see) {
-  if (!has_header(message)) return;
-  std::size_t at = kHeader;
-  while (at + 4 <= message.size()) {
-    Submessage sub{message[at], message[at + 1], (message[at + 1] & 1) != 0, {}};
-    const std::size_t length =
-        sub.little ? message[at + 2] | message[at + 3] << 8 : message[at + 3] | message[at + 2] << 8;
-    const std::size_t rest = message.size() - at - 4;
-    // Length 0 means that the last submessage extends to the end. A truncated one is visible up to the end.
-    sub.body = message.subspan(at + 4, length == 0 ? rest : std::min(length, rest));
-    if (!see(sub) || length == 0) return;
-    at += 4 + length;
-  }
-}
-
 void mix(std::uint64_t& hash, std::uint64_t value) {
   hash = (hash ^ value) * 0x9e3779b97f4a7c15ULL;
   hash ^= hash >> 29;
@@ -46,7 +29,7 @@ void mix(std::uint64_t& hash, Message bytes) {
 
 bool is_protected(Message message) {
   bool found = false;
-  each(message, [&](const Submessage& sub) {
+  each_submessage(message, [&](const Submessage& sub) {
     found = sub.kind >= kFirstSecurity && sub.kind <= kLastSecurity;
     return !found;
   });
@@ -92,7 +75,7 @@ RtpsPeek peek(Message message) {
   int samples = 0;
   bool has_dedup_key = true;
   std::uint64_t hash = 0;
-  each(message, [&](const Submessage& sub) {
+  each_submessage(message, [&](const Submessage& sub) {
     if (sub.kind == kInfoDestination && !result.destination && sub.body.size() >= 12) {
       const ParticipantId id = prefix_at(sub.body.data());
       if (id != ParticipantId{}) result.destination = id;
@@ -115,7 +98,7 @@ RtpsPeek peek(Message message) {
 
 std::optional<std::uint64_t> sample_key(Message message) {
   std::optional<std::uint64_t> result;
-  each(message, [&](const Submessage& sub) {
+  each_submessage(message, [&](const Submessage& sub) {
     if (sub.kind != kData) return true;
     if (sub.body.size() < kDataFixed) return false;
     std::uint64_t hash = 0;
@@ -145,7 +128,7 @@ std::size_t without_statistics(Message message) {
   if (tail[0] != kStatistics || tail[2] + (tail[3] << 8) != kStatisticsSize - 4) return size;
   // A payload can end with the same bytes: the tail is removed only when a submessage begins there.
   bool begins = false;
-  each(message, [&](const Submessage& sub) {
+  each_submessage(message, [&](const Submessage& sub) {
     begins = sub.kind == kStatistics && sub.body.data() == tail + 4;
     return !begins;
   });
@@ -155,7 +138,7 @@ std::size_t without_statistics(Message message) {
 std::optional<LoneHeartbeat> lone_heartbeat(Message message) {
   std::optional<LoneHeartbeat> result;
   bool lone = true;
-  each(message, [&](const Submessage& sub) {
+  each_submessage(message, [&](const Submessage& sub) {
     if (sub.kind == kHeartbeat && !result && sub.body.size() >= 24) {
       result = {entity(sub.body, 4), sequence(sub, 8), sequence(sub, 16)};
     } else if (sub.kind != kInfoDestination && sub.kind != kInfoTimestamp && sub.kind != kStatistics) {
@@ -169,7 +152,7 @@ std::optional<LoneHeartbeat> lone_heartbeat(Message message) {
 std::optional<PeerAddress> announced_address(Message message) {
   constexpr std::uint32_t udp_v4 = 1;
   std::optional<PeerAddress> result;
-  each(message, [&](const Submessage& sub) {
+  each_submessage(message, [&](const Submessage& sub) {
     if (sub.kind != kData || sub.body.size() < kDataFixed || entity(sub.body, 8) != kAnnouncingWriter)
       return true;
     // Only little-endian parameter lists are read, as all known implementations send them.
@@ -194,7 +177,7 @@ std::optional<PeerAddress> announced_address(Message message) {
 
 std::optional<Acknowledged> acknowledgement(Message message) {
   std::optional<Acknowledged> result;
-  each(message, [&](const Submessage& sub) {
+  each_submessage(message, [&](const Submessage& sub) {
     if (sub.kind == kAcknack && sub.body.size() >= 16) result = {entity(sub.body, 4), sequence(sub, 8)};
     return !result;
   });
@@ -205,7 +188,7 @@ void change_heartbeat_counts(std::span<std::uint8_t> message,
                              const std::function<bool(std::uint32_t)>& of_writer, std::uint32_t factor,
                              std::uint32_t more) {
   if (is_protected(message)) return;
-  each(message, [&](const Submessage& sub) {
+  each_submessage(message, [&](const Submessage& sub) {
     if (sub.kind != kHeartbeat || sub.body.size() < 28 || !of_writer(entity(sub.body, 4))) return true;
     const auto count = static_cast<std::uint32_t>(word(sub, 24)) * factor + more;
     const auto at = static_cast<std::size_t>(sub.body.data() - message.data()) + 24;

@@ -45,8 +45,10 @@ struct LoneHeartbeat {
 };
 std::optional<LoneHeartbeat> lone_heartbeat(std::span<const std::uint8_t> message);
 
-/// Entity id of the writer of participant announcements: RTPS 2.2, 9.3.1.3.
-inline constexpr std::uint32_t kAnnouncingWriter = 0x000100c2;
+/// Entity ids of the writers of participant announcements, and of those of writers and readers: RTPS 2.2,
+/// 9.3.1.3.
+inline constexpr std::uint32_t kAnnouncingWriter = 0x000100c2, kPublicationsWriter = 0x000003c2,
+                               kSubscriptionsWriter = 0x000004c2;
 
 /// Unicast address at which the announcing participant receives discovery data; nothing when the message is
 /// no announcement, or a goodbye.

@@ -25,10 +25,10 @@ constexpr std::uint8_t kWithQos = 2, kWithData = 4, kWithKey = 8;  // Flags of D
 constexpr std::size_t kDataFixed = 20;  // Of a DATA's body, before its parameters and its payload.
 
 // Parameters: RTPS 2.2, 9.6.2.2.
-constexpr std::uint16_t kPadding = 0, kSentinel = 1, kLease = 0x02, kTopicName = 0x05, kUnicast = 0x2f,
-                        kMulticast = 0x30, kDefaultUnicast = 0x31, kMetatrafficUnicast = 0x32,
-                        kMetatrafficMulticast = 0x33, kDefaultMulticast = 0x48, kParticipantGuid = 0x50,
-                        kEndpointGuid = 0x5a, kKeyHash = 0x70, kStatusInfo = 0x71;
+constexpr std::uint16_t kSentinel = 1, kLease = 0x02, kTopicName = 0x05, kUnicast = 0x2f, kMulticast = 0x30,
+                        kDefaultUnicast = 0x31, kMetatrafficUnicast = 0x32, kMetatrafficMulticast = 0x33,
+                        kDefaultMulticast = 0x48, kParticipantGuid = 0x50, kEndpointGuid = 0x5a,
+                        kKeyHash = 0x70, kStatusInfo = 0x71;
 
 struct Submessage {
   std::uint8_t kind{}, flags{};
@@ -64,6 +64,23 @@ inline ParticipantId prefix_at(const std::uint8_t* bytes) {
   ParticipantId id{};
   std::copy_n(bytes, id.size(), id.begin());
   return id;
+}
+
+/// Calls `see` for each submessage until it returns false. The body of a truncated one extends to the end of
+/// the message.
+template <class See>
+void each_submessage(Message message, See see) {
+  if (!has_header(message)) return;
+  std::size_t at = kHeader;
+  while (at + kSubmessageHeader <= message.size()) {
+    Submessage sub{message[at], message[at + 1], (message[at + 1] & 1) != 0, {}};
+    const std::size_t length = half(message, at + 2, sub.little);
+    const std::size_t rest = message.size() - at - kSubmessageHeader;
+    // Length 0 means that the last submessage extends to the end.
+    sub.body = message.subspan(at + kSubmessageHeader, length == 0 ? rest : std::min(length, rest));
+    if (!see(sub) || length == 0) return;
+    at += kSubmessageHeader + length;
+  }
 }
 
 /// Calls `see(id, value)` for each parameter of the list at `at` until it returns false. Returns the offset
