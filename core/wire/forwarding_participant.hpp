@@ -23,6 +23,9 @@ class ForwardingParticipant : public Participant {
   void on_participant(Executor& strand, std::function<void(const ParticipantEvent&)> handler) override {
     inner_.on_participant(strand, std::move(handler));
   }
+  std::vector<RemoteEndpoint> endpoints(const std::string& topic) const override {
+    return inner_.endpoints(topic);
+  }
   WireCounters counters() const override { return inner_.counters(); }
   SenderState sender() const override { return inner_.sender(); }
   std::vector<PeerState> peers() const override { return inner_.peers(); }

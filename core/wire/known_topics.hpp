@@ -11,13 +11,18 @@ namespace adit::wire {
 /// adapters refuse a topic that contradicts that here.
 class KnownTopics {
  public:
+  /// Whether a topic of this name is known with another type, key or bound.
+  bool contradicts(const TopicInfo& topic) const {
+    const auto known = topics_.find(topic.name);
+    return known != topics_.end() && known->second != Known{topic.type, topic.keyed, topic.max_bytes};
+  }
+  void forget(const std::string& name) { topics_.erase(name); }
   /// Adds a topic. Error bad_argument: a topic of this name has another type, key or bound, or the type is
   /// keyed in another topic and not here (or the reverse).
   Result<void> add(const TopicInfo& topic) {
-    const auto known = topics_.find(topic.name);
-    if (known != topics_.end() && known->second != Known{topic.type, topic.keyed, topic.max_bytes}) {
+    if (contradicts(topic)) {
       return Error{Reason::bad_argument,
-                   std::string(topic.name) + " is a topic of type " + known->second.type +
+                   std::string(topic.name) + " is a topic of type " + topics_.at(topic.name).type +
                        " already, with another type, key or bound than asked for (" + topic.type + ")"};
     }
     const auto type = types_.try_emplace(topic.type, topic.keyed).first;

@@ -69,6 +69,13 @@ struct ParticipantEvent {
   std::string incompatible{};
 };
 
+/// A writer or reader of another participant, whether or not it fits ours.
+struct RemoteEndpoint {
+  ParticipantId participant{};
+  std::string type{};  ///< DDS type name.
+  bool writes{};       ///< A writer; otherwise a reader.
+};
+
 /// Traffic of one topic between us and one peer since the start. Bytes are those on the network: payload,
 /// RTPS, UDP and IP headers.
 struct TopicCount {
@@ -108,8 +115,9 @@ struct WireCounters {
 };
 
 /// One participant on one domain: creates writers and readers, reports other participants, and counts
-/// traffic. Its destructor says goodbye to the others. Errors are bad_argument (also: a topic of that name
-/// already has another type, key or bound here) and wire_failed. Calls are safe from any thread.
+/// traffic. Its destructor says goodbye to the others. Errors are bad_argument (also: a writer or reader of
+/// ours uses a topic of that name with another type, key or bound) and wire_failed. Calls are safe from any
+/// thread.
 class Participant {
  public:
   virtual ~Participant() = default;
@@ -127,6 +135,8 @@ class Participant {
   /// are reported at once. A participant that turns out to be of another release is reported once more. There
   /// is one handler per participant; an empty one ends the reports, and `strand` may then be destroyed.
   virtual void on_participant(Executor& strand, std::function<void(const ParticipantEvent&)> handler) = 0;
+  /// The endpoints of other participants on a topic, of any type, as far as they are known now.
+  virtual std::vector<RemoteEndpoint> endpoints(const std::string& topic) const = 0;
   /// Counts since this participant was created.
   virtual WireCounters counters() const = 0;
   /// State of the send queue. The call is cheap and allocates nothing.

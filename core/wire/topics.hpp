@@ -96,6 +96,9 @@ inline constexpr Topic<geometry_msgs::msg::TwistStamped> kCmdVelStampedHeard{
 /// Velocity that a program of the robot requests in the mode `external`.
 inline constexpr Topic<geometry_msgs::msg::Twist> kExternalCmdVel{
     {"rt/external/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::state, 1, kUnkeyed, 64}};
+/// The same topic for a program that stamps its velocities; the agent reads the one that is written.
+inline constexpr Topic<geometry_msgs::msg::TwistStamped> kExternalCmdVelStamped{
+    {"rt/external/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_", QosClass::state, 1, kUnkeyed, 256}};
 inline constexpr Topic<nav_msgs::msg::Odometry> kOdom{
     {"rt/odom", "nav_msgs::msg::dds_::Odometry_", QosClass::state, 1, kUnkeyed, 2048}};
 inline constexpr Topic<sensor_msgs::msg::PointCloud2> kPoints{

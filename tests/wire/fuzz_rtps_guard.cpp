@@ -7,6 +7,7 @@
 
 #include "core/wire/fastdds/rtps_guard.hpp"
 #include "core/wire/fastdds/rtps_submessage.hpp"
+#include "tests/wire/kept_datagrams.hpp"
 #include "tests/wire/rtps_messages.hpp"
 
 using namespace adit;
@@ -14,11 +15,16 @@ using namespace adit::wire;
 
 namespace {
 
-const ParticipantId kUs = test::participant(1), kRobot = test::participant(2);
-constexpr std::uint32_t kWriter = 0x00000103;
+const ParticipantId kFuzzed = test::participant(1), kPeer = test::participant(2);
+constexpr std::uint32_t kPeerWriter = 0x00000103;
 
 void check(bool holds) {
   if (!holds) std::abort();
+}
+
+void write_seed(const std::filesystem::path& file, std::span<const std::uint8_t> bytes) {
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 
 /// What passed consists of complete submessages of known kinds that carry what they say.
@@ -37,16 +43,18 @@ void check_passed(std::span<const std::uint8_t> passed) {
 void write_seeds(const std::filesystem::path& folder) {
   using namespace test;
   const std::vector<Bytes> messages{
-      rtps_message(kRobot, {announcement(kRobot, {locator("10.0.0.2", 7410), locator("10.0.0.9", 7410)})}),
-      rtps_message(kRobot, {destination(kUs), endpoint(kPublications, kRobot, kWriter, "adit/health", 1)}),
-      rtps_message(kRobot, {fragment(kWriter, 1, 1, 1, 1000, 4000, 100), heartbeat(kWriter, 1, 9)}),
-      rtps_message(kRobot, {gap(kWriter, 1, 9), submessage(0x80, Bytes(56)), goodbye(kRobot)})};
+      rtps_message(kPeer, {announcement(kPeer, {locator("10.0.0.2", 7410), locator("10.0.0.9", 7410)})}),
+      rtps_message(kPeer,
+                   {destination(kFuzzed), endpoint(kPublications, kPeer, kPeerWriter, "adit/health", 1)}),
+      rtps_message(kPeer, {fragment(kPeerWriter, 1, 1, 1, 1000, 4000, 100), heartbeat(kPeerWriter, 1, 9)}),
+      rtps_message(kPeer, {gap(kPeerWriter, 1, 9), submessage(0x80, Bytes(56)), goodbye(kPeer)})};
   for (std::size_t i = 0; i < messages.size(); ++i) {
-    std::ofstream file(folder / ("seed" + std::to_string(i)), std::ios::binary);
-    file.put(0);
-    file.write(reinterpret_cast<const char*>(messages[i].data()),
-               static_cast<std::streamsize>(messages[i].size()));
+    Bytes seed{0};
+    seed.insert(seed.end(), messages[i].begin(), messages[i].end());
+    write_seed(folder / ("seed" + std::to_string(i)), seed);
   }
+  const auto kept = kept_datagrams("tests/wire/datagrams.corpus");
+  for (std::size_t i = 0; i < kept.size(); ++i) write_seed(folder / ("kept" + std::to_string(i)), kept[i]);
 }
 
 }  // namespace
@@ -70,7 +78,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     now += std::chrono::milliseconds(head * 10);
     for (RtpsGuard* guard : {&radio, &inner}) {
       std::vector<std::uint8_t> copy;
-      const auto passed = guard->pass(message, {0x0200000aU + head % 2U, 40000}, kUs, now, copy);
+      const auto passed = guard->pass(message, {0x0200000aU + head % 2U, 40000}, kFuzzed, now, copy);
       check(passed.size() <= message.size());
       if (!passed.empty()) check_passed(passed);
     }

@@ -6,7 +6,11 @@
 #include <optional>
 #include <random>
 
+#include "tests/folders/folders.hpp"
+#include "tests/wire/kept_datagrams.hpp"
 #include "tests/wire/rtps_messages.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace adit::wire {
 namespace {
@@ -401,6 +405,12 @@ TEST(RtpsGuard, SurvivesDamagedMessages) {
     const auto passed = g.guard.pass(damaged, kRobotSocket, kUs, 1s, copy);
     EXPECT_LE(passed.size(), damaged.size());
   }
+}
+
+TEST(RtpsGuard, WhatTheFuzzerFoundWorthKeepingIsSafe) {
+  const auto kept = kept_datagrams(source_folder() + "/tests/wire/datagrams.corpus");
+  ASSERT_GT(kept.size(), 500U);
+  for (const auto& input : kept) EXPECT_EQ(LLVMFuzzerTestOneInput(input.data(), input.size()), 0);
 }
 
 }  // namespace

@@ -62,6 +62,39 @@ TYPED_TEST(TopicConformance, ATopicHasOneTypeKeyAndBound) {
   EXPECT_TRUE(this->robot->make_writer(topics::kCmdVelStamped, "other").ok());
 }
 
+TYPED_TEST(TopicConformance, ATopicMayGetAnotherTypeWhenNothingUsesIt) {
+  {
+    const auto reader = this->read(topics::kCmdVelHeard);
+    ASSERT_TRUE(reader.ok());
+    EXPECT_EQ(this->read(topics::kCmdVelStampedHeard).reason(), Reason::bad_argument);
+  }
+  const auto reader = this->read(topics::kCmdVelStampedHeard);
+  ASSERT_TRUE(reader.ok());
+  const auto writer = std::move(this->station->make_writer(topics::kCmdVelStampedHeard, "")).value();
+  ASSERT_TRUE(this->net.until([&] { return writer->matched() == 1; }));
+  this->net.pass(300ms);
+  ASSERT_TRUE(this->net.until([&] { return writer->write(Payload(8, 1)).ok() && this->seen.size() > 0; }));
+}
+
+TYPED_TEST(TopicConformance, EndpointsOfOthersAreListedWhateverTheirType) {
+  const auto of = [&](bool writes) {
+    const auto all = this->robot->endpoints(topics::kCmdVel.name);
+    return std::count_if(all.begin(), all.end(), [&](const RemoteEndpoint& endpoint) {
+      return endpoint.participant == this->station->id() && endpoint.writes == writes &&
+             endpoint.type == topics::kCmdVelStamped.type;
+    });
+  };
+  const auto own = this->robot->make_writer(topics::kCmdVel, "");
+  {
+    const auto writer = this->station->make_writer(topics::kCmdVelStamped, "");
+    const auto reader = this->read(*this->station, topics::kCmdVelStamped, "");
+    ASSERT_TRUE(this->net.until([&] { return of(true) == 1 && of(false) == 1; }));
+    EXPECT_TRUE(this->robot->endpoints("rt/cmd").empty());
+  }
+  ASSERT_TRUE(this->net.until([&] { return of(true) == 0 && of(false) == 0; }));
+  EXPECT_TRUE(this->robot->endpoints(topics::kCmdVel.name).empty());
+}
+
 TYPED_TEST(TopicConformance, TopicsOfOneTypeHaveTheirOwnBounds) {
   constexpr TopicInfo small{"adit/test_small", "Sized", QosClass::urgent, 4, topics::kUnkeyed, 64};
   constexpr TopicInfo large{"adit/test_large", "Sized", QosClass::urgent, 4, topics::kUnkeyed, 16384};

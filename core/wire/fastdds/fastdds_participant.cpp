@@ -17,6 +17,7 @@
 #include "core/wire/fastdds/filtering_transport.hpp"
 #include "core/wire/fastdds/link_shaper.hpp"
 #include "core/wire/fastdds/participant_qos.hpp"
+#include "core/wire/fastdds/remote_endpoints.hpp"
 #include "core/wire/fastdds/subnets.hpp"
 #include "core/wire/fastdds/udp_sender.hpp"
 #include "core/wire/known_topics.hpp"
@@ -69,6 +70,7 @@ class DiscoveryListener final : public dds::DomainParticipantListener {
     if (target_) target_->close();
     target_.reset();
   }
+  const RemoteEndpoints& endpoints() const { return endpoints_; }
 
  private:
   struct Peer {
@@ -89,18 +91,30 @@ class DiscoveryListener final : public dds::DomainParticipantListener {
     const ParticipantId id = id_of(info.info.m_guid.guidPrefix);
     const bool gone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
                       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
-    if (gone) context_->assist.dropped(id);
+    if (gone) {
+      context_->assist.dropped(id);
+      endpoints_.lost_all(id);
+    }
     const std::lock_guard lock(mutex_);
     const bool changed =
         gone ? present_.erase(id) > 0
              : present_.try_emplace(id, Peer{info.info.m_participantName.to_string(), {}}).second;
     if (changed) notify({id, !gone, {}});
   }
-  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
-    look(info.info.guid().guidPrefix, info.info.typeName().to_string());
+  void on_publisher_discovery(dds::DomainParticipant* own, rtps::WriterDiscoveryInfo&& info) override {
+    note(*own, info.info, info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER, true);
   }
-  void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
-    look(info.info.guid().guidPrefix, info.info.typeName().to_string());
+  void on_subscriber_discovery(dds::DomainParticipant* own, rtps::ReaderDiscoveryInfo&& info) override {
+    note(*own, info.info, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER, false);
+  }
+  template <class Proxy>
+  void note(const dds::DomainParticipant& own, const Proxy& proxy, bool removed, bool writes) {
+    const std::string type = proxy.typeName().to_string();
+    look(proxy.guid().guidPrefix, type);
+    if (removed)
+      endpoints_.lost(proxy.guid());
+    else if (proxy.guid().guidPrefix != own.guid().guidPrefix)
+      endpoints_.found(proxy.guid(), proxy.topicName().to_string(), type, writes);
   }
   /// Checks the type of an endpoint of a peer for another contract version.
   void look(const rtps::GuidPrefix_t& prefix, const std::string& type) {
@@ -124,6 +138,7 @@ class DiscoveryListener final : public dds::DomainParticipantListener {
   std::shared_ptr<TransportContext> context_;
   std::mutex mutex_{};
   std::map<ParticipantId, Peer> present_{};
+  RemoteEndpoints endpoints_{};
   Executor* strand_{};
   std::shared_ptr<Target> target_{};
 };
@@ -235,6 +250,10 @@ class FastDdsParticipant final : public Participant {
     listener_.watch(strand, std::move(handler));
   }
 
+  std::vector<RemoteEndpoint> endpoints(const std::string& topic) const override {
+    return listener_.endpoints().of(topic);
+  }
+
   WireCounters counters() const override {
     WireCounters result;
     result.topics = counts_->all();
@@ -260,9 +279,15 @@ class FastDdsParticipant final : public Participant {
 
  private:
   Result<dds::Topic*> topic_of(const TopicInfo& topic) {
+    dds::Topic*& known = topics_[topic.name];
+    // A topic that no endpoint uses any more may get another type; while one does, the library keeps it.
+    if (known_.contradicts(topic) && known != nullptr &&
+        participant_->delete_topic(known) == ReturnCode_t::RETCODE_OK) {
+      known = nullptr;
+      known_.forget(topic.name);
+    }
     if (const auto allowed = known_.add(topic); !allowed) return allowed.error();
     context_->guard.admit_samples(topic.max_bytes);
-    dds::Topic*& known = topics_[topic.name];
     if (known != nullptr) return known;
     dds::TypeSupport type(new BytesType(topic.type, topic.keyed, topic.max_bytes));
     if (participant_->find_type(topic.type).empty() &&

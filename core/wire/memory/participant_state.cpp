@@ -183,6 +183,24 @@ void ParticipantState::stop(bool goodbye) {
   for (const auto& [entity, reader] : readers) reader->strand = nullptr;
 }
 
+Result<void> ParticipantState::use(const TopicInfo& topic) {
+  const auto is_of = [&](const auto& endpoint) { return endpoint.second->topic.name == topic.name; };
+  if (std::none_of(writers.begin(), writers.end(), is_of) &&
+      std::none_of(readers.begin(), readers.end(), is_of))
+    known_topics.forget(topic.name);
+  return known_topics.add(topic);
+}
+
+std::vector<RemoteEndpoint> ParticipantState::endpoints(const std::string& topic) const {
+  std::vector<RemoteEndpoint> result;
+  for (const auto& [peer, known] : peers)
+    for (const auto* of : {&known.writers, &known.readers})
+      for (const auto& [entity, endpoint] : *of)
+        if (endpoint.name == topic)
+          result.push_back({peer_participant(peer)->id, endpoint.type, of == &known.writers});
+  return result;
+}
+
 void ParticipantState::add_writer(const std::shared_ptr<WriterState>& writer) {
   writers[writer->entity] = writer;
   for (const auto& [peer_node, peer] : peers) {

@@ -161,6 +161,9 @@ struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
   void drop(int peer);
   void stop(bool goodbye);
 
+  /// Adds a topic for an endpoint. Errors: those of KnownTopics, while an endpoint uses the other one.
+  Result<void> use(const TopicInfo& topic);
+  std::vector<RemoteEndpoint> endpoints(const std::string& topic) const;
   void add_writer(const std::shared_ptr<WriterState>& writer);
   void add_reader(const std::shared_ptr<ReaderState>& reader);
   void remove_writer(int entity);

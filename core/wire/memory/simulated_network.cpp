@@ -48,7 +48,7 @@ class MemoryParticipant final : public Participant {
 
   Result<std::unique_ptr<RawWriter>> make_writer(const TopicInfo& topic,
                                                  const std::string& partition) override {
-    if (const auto allowed = participant_->known_topics.add(topic); !allowed) return allowed.error();
+    if (const auto allowed = participant_->use(topic); !allowed) return allowed.error();
     auto state = std::make_shared<WriterState>();
     state->owner = participant_.get();
     state->entity = participant_->next_entity++;
@@ -59,7 +59,7 @@ class MemoryParticipant final : public Participant {
 
   Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,
                                                  Executor& strand, RawHandler handler) override {
-    if (const auto allowed = participant_->known_topics.add(topic); !allowed) return allowed.error();
+    if (const auto allowed = participant_->use(topic); !allowed) return allowed.error();
     auto state = std::make_shared<ReaderState>();
     state->owner = participant_.get();
     state->entity = participant_->next_entity++;
@@ -80,6 +80,10 @@ class MemoryParticipant final : public Participant {
       participant_->notify(peer, true);
       if (!state.incompatible.empty()) participant_->notify(peer, true, state.incompatible);
     }
+  }
+
+  std::vector<RemoteEndpoint> endpoints(const std::string& topic) const override {
+    return participant_->endpoints(topic);
   }
 
   WireCounters counters() const override {
