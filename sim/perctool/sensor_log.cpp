@@ -12,6 +12,10 @@
 namespace adit::sim::perctool {
 namespace {
 
+constexpr double kBeside = 1.0;     ///< Motion so long before or after the clouds is of them, too, s.
+constexpr double kSince1970 = 1e9;  ///< Later stamps count from 1970, s.
+constexpr double kLatest = 9e9;     ///< Stamps are ns in 64 bits.
+
 std::uint64_t stamp_of(double seconds) {
   return kLogStart + static_cast<std::uint64_t>(std::llround(seconds * 1e9));
 }
@@ -30,6 +34,17 @@ bool parse_numbers(const std::string& line, std::array<double, 7>& out) {
   return at == end;
 }
 
+/// Motion that is given must lie in the time of the clouds; otherwise none of it would be used, without a
+/// word.
+Result<void> in_the_time_of_clouds(const std::string& file, double first, double last, double end) {
+  if (last >= -kBeside && first <= end + kBeside) return {};
+  return {Reason::out_of_range,
+          fmt::format(
+              "{}: its stamps go from {:.3f} to {:.3f} s, those of the clouds from 0 to {:.3f} s, so that "
+              "nothing of it would be used; stamps count from the first cloud{}",
+              file, first, last, end, first > kSince1970 ? ": subtract its time since 1970 from each" : "")};
+}
+
 Result<void> play_folder(const SensorLogOptions& options, SensorSink& sink) {
   const auto files = cloud_files(options.clouds);
   if (!files) return files.error();
@@ -45,6 +60,20 @@ Result<void> play_folder(const SensorLogOptions& options, SensorSink& sink) {
     if (!read) return read.error();
     wheels = std::move(*read);
   }
+  const double length = static_cast<double>(files->size()) / options.rate;
+  const auto since_start = [](std::uint64_t stamp) {
+    return static_cast<double>(static_cast<std::int64_t>(stamp - kLogStart)) * 1e-9;
+  };
+  if (!imu.empty())
+    if (const auto fits = in_the_time_of_clouds(options.imu, since_start(imu.front().stamp),
+                                                since_start(imu.back().stamp), length);
+        !fits)
+      return fits;
+  if (!wheels.empty())
+    if (const auto fits =
+            in_the_time_of_clouds(options.wheels, wheels.front().stamp_s, wheels.back().stamp_s, length);
+        !fits)
+      return fits;
   constexpr double kLead = 0.05;  // s: motion that comes with a sweep, beyond its end
   const double period = 1.0 / options.rate;
   std::size_t i = 0, w = 0;
@@ -77,7 +106,7 @@ Result<std::vector<perception::ImuSample>> read_imu_csv(const std::filesystem::p
     std::array<double, 7> v{};
     const bool header = number == 1 && std::isalpha(static_cast<unsigned char>(line[0]));
     if (header) continue;
-    if (!parse_numbers(line, v) || v[0] < -1e6 || v[0] > 1e9)
+    if (!parse_numbers(line, v) || v[0] < -1e6 || v[0] > kLatest)
       return {Reason::syntax,
               fmt::format("{}:{}: expected stamp_s,gx,gy,gz,ax,ay,az", file.string(), number)};
     if (!out.empty() && stamp_of(v[0]) < out.back().stamp)

@@ -42,6 +42,26 @@ TEST(SensorLog, PlaysCloudsImuAndWheelsInTheOrderOfTime) {
   EXPECT_EQ(log.last_wheels.pose.position.x(), 1.0);
 }
 
+TEST(SensorLog, MotionBesideTheTimeOfTheCloudsIsRefused) {
+  const Scratch scratch;
+  for (const char* name : {"0.bin", "1.bin", "2.bin"}) scratch.write(name, std::string(16, '\0'));
+  scratch.write("imu.csv", "1700000000.00,1,2,3,4,5,6\n1700000000.3,0,0,0.5,0,0,9.81\n");
+  scratch.write("wheels.tum", "1700000000.1 1 0 0 0 0 0 1\n");
+  scratch.write("early.tum", "-9.5 1 0 0 0 0 0 1\n");
+  const SensorLogOptions clouds{.clouds = scratch.path("").string()};
+  for (const char* name : {"imu.csv", "wheels.tum", "early.tum"}) {
+    SensorLogOptions options = clouds;
+    (name[0] == 'i' ? options.imu : options.wheels) = scratch.path(name).string();
+    Log log;
+    const auto played = play_log(options, log);
+    ASSERT_EQ(played.reason(), Reason::out_of_range) << name;
+    EXPECT_NE(played.error().text.find("those of the clouds from 0 to 0.300 s"), std::string::npos)
+        << played.error().text;
+    EXPECT_EQ(played.error().text.find("since 1970") != std::string::npos, name[0] != 'e');
+    EXPECT_TRUE(log.order.empty());
+  }
+}
+
 TEST(SensorLog, BrokenImuFilesNameTheirLine) {
   const Scratch scratch;
   for (const char* line : {"0,1,2,3,4,5", "0,1,2,3,4,5,6,7", "0;1;2;3;4;5;6", "0,1,2,3,4,5,nan",
