@@ -18,9 +18,8 @@ constexpr std::array kTimeNames{"t", "time", "timestamp", "offset_time", "time_s
 constexpr std::array kRingNames{"ring", "line", "channel"};
 constexpr std::array kIntensityNames{"intensity", "reflectivity"};
 constexpr std::array kUnits{1.0, 1e-3, 1e-6, 1e-9};
-/// Of a sweep's duration, that the times of one must span at least; and at most, for a lidar that turns
-/// slower than the file says.
-constexpr double kShortest = 1.0 / 40, kLongest = 1.6;
+constexpr double kLongest = PointLayout::kLongest;
+constexpr double kShortest = 1.0 / 40;   ///< Of a sweep's duration, that the times of one must span at least.
 constexpr std::size_t kFewPoints = 200;  ///< Fewer may all be seen within an instant.
 constexpr double kSinceEpoch = 1e14;     ///< A larger float64 counts ns since 1970.
 constexpr double kSameClock = 1.0;       ///< Absolute times this near to the stamp are of its clock, s.

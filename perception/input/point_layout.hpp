@@ -25,6 +25,9 @@ struct PointField {
 /// a sweep takes, because drivers of one name disagree about it.
 class PointLayout {
  public:
+  /// Of a sweep's duration, that its times may span: a lidar may turn more slowly than the file says.
+  static constexpr double kLongest = 1.6;
+
   /// Reason::malformed when a field is missing, or lies outside the point.
   static Result<PointLayout> of(std::span<const PointField> fields, std::uint32_t point_step);
 

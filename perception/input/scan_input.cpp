@@ -52,18 +52,31 @@ Result<Pose3> ScanInput::find(const std::string& frame) const {
                "the frame '" + frame + "' is neither in `sensors` of the platform's file nor in tf_static"};
 }
 
+Result<Pose3> ScanInput::mounting_of_imu(const std::string& frame) const {
+  const bool own = frame.empty() || frame_name(frame) == platform_.imu->frame;
+  return own ? Result<Pose3>(platform_.imu->mounting.pose()) : find(frame);
+}
+
 Result<void> ScanInput::add(const ImuSample& sample, const std::string& frame) {
   if (!tilt_) return {};
-  if (frame_name(frame) != imu_frame_ || imu_frame_.empty()) {
-    // The file's place counts for its own frame; what the driver calls otherwise is looked up.
-    const bool own = frame.empty() || frame_name(frame) == platform_.imu->frame;
-    const auto T_base_imu = own ? Result<Pose3>(platform_.imu->mounting.pose()) : find(frame);
+  auto added = filter(sample, frame);
+  imu_refused_ = imu_refused_ || !added;
+  return added;
+}
+
+Result<void> ScanInput::filter(const ImuSample& sample, const std::string& frame) {
+  const std::string name = frame.empty() ? platform_.imu->frame : frame_name(frame);
+  if (name != imu_frame_ || imu_frame_.empty()) {
+    const auto T_base_imu = mounting_of_imu(frame);
     if (!T_base_imu) return T_base_imu.error();
     const Eigen::Vector3d angles = T_base_imu->orientation.toRotationMatrix().eulerAngles(2, 1, 0);
     tilt_.emplace(Mounting{T_base_imu->position.x(), T_base_imu->position.y(), T_base_imu->position.z(),
                            angles[2], angles[1], angles[0]});
-    imu_frame_ = own ? platform_.imu->frame : frame_name(frame);
+    imu_frame_ = name;
   }
+  if (sample.stamp == 0)
+    return {Reason::sensor_times, "the samples of the IMU on the topic '" + platform_.imu->topic +
+                                      "' have no stamp: its driver must set the time of each in the header"};
   return tilt_->add(sample);
 }
 
@@ -126,7 +139,9 @@ Result<void> ScanInput::plausible(Source& source, const Sweep& sweep, const Scan
 }
 
 void ScanInput::note_attitude(Scan& scan) {
-  if (!tilt_ || scan.attitude || scan.stamp == 0) {
+  // Samples that cannot be used are reported with their reason.
+  const bool refused = std::exchange(imu_refused_, false);
+  if (!tilt_ || scan.attitude || scan.stamp == 0 || refused) {
     without_imu_ = 0;
     return;
   }
@@ -175,7 +190,12 @@ std::size_t ScanInput::add_points(const Source& source, const Sweep& sweep, cons
   std::size_t below = 0;
   const std::vector<std::uint8_t>* isolated =
       marks_isolated_ && &source == &sources_.front() && !moved ? &isolated_.find(sweep) : nullptr;
+  if (isolated) scattered_ = isolated_.scattered() ? std::min(scattered_ + 1, kPatience) : 0;
   if (isolated && isolated->empty()) isolated = nullptr;
+  if (scattered_ >= kPatience && &source == &sources_.front())
+    scan.warnings.push_back({"returns_scattered", Reason::none,
+                             "more than 40 % of the lidar's returns have no neighbour, as in thick dust or "
+                             "rain: the odometry uses all of them"});
   for (const TimedPoint& point : sweep.points) {
     const float range2 = (point.position - origin).squaredNorm();
     if (!std::isfinite(range2)) {

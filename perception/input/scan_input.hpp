@@ -64,8 +64,11 @@ class ScanInput {
                              const Pose3& T_parent_child) {
     return tree_.set(parent, child, T_parent_child);
   }
-  /// One sample of the IMU. Errors: frame_unknown; those of TiltFilter::add.
+  /// One sample of the IMU. Errors: frame_unknown; sensor_times without a stamp; those of TiltFilter::add.
   Result<void> add(const ImuSample& sample, const std::string& frame);
+  /// T_base_imu for samples with this frame_id. The file's mounting counts for its own frame and for none,
+  /// whatever a lidar's frame is called; another name is looked up. Error: frame_unknown.
+  Result<Pose3> mounting_of_imu(const std::string& frame) const;
   /// What the body drives by its odometry, body frame, m/s, and its yaw, rad.
   void add_odometry(std::uint64_t stamp, const Eigen::Vector3d& velocity, double yaw);
 
@@ -110,6 +113,7 @@ class ScanInput {
     Deskew deskew;
     float first{};  ///< After Sweep::stamp, s.
   };
+  Result<void> filter(const ImuSample& sample, const std::string& frame);
   /// Errors: sample_stale, sensor_times.
   static Result<void> in_order(Source& source, std::uint64_t stamp);
   /// Whether the lidar can be there; `below`: returns of `scan` that are below it. Errors: scan_empty,
@@ -133,7 +137,9 @@ class ScanInput {
   std::vector<Source> sources_{};
   std::optional<TiltFilter> tilt_{};
   std::string imu_frame_{};
-  int without_imu_{};  ///< Scans in a row.
+  bool imu_refused_{false};  ///< A sample of the IMU was, since the last scan.
+  int without_imu_{};        ///< Scans in a row.
+  int scattered_{};          ///< Scans in a row.
 };
 
 }  // namespace adit::perception

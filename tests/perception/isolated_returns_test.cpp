@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -45,6 +46,48 @@ TEST(IsolatedReturns, FindsDustAndKeepsWalls) {
   }
   EXPECT_GT(found, 0.8 * dust);
   EXPECT_EQ(wrong, 0);
+}
+
+/// A sweep of a lidar that scans a rosette with four lines in one plane, as Livox's do, in a furnished room:
+/// walls of a box and twelve pillars.
+Sweep rosette(Random& random) {
+  Sweep sweep;
+  constexpr int kPoints = 20'000, kLines = 4;
+  for (int n = 0; n < kPoints; ++n) {
+    const double t = 0.1 * n / kPoints;
+    const double out = 0.6 * std::cos(2 * M_PI * 93.7 * t), about = 2 * M_PI * 61.3 * t + 0.01 * (n % kLines);
+    Eigen::Vector3d ray(1.0, std::tan(out) * std::cos(about), std::tan(out) * std::sin(about));
+    ray.normalize();
+    double range = std::min(8 / ray.x(), ray.y() != 0 ? 5 / std::abs(ray.y()) : 1e9);
+    range = std::min(range, ray.z() < 0 ? 1.2 / -ray.z() : ray.z() > 0 ? 2.0 / ray.z() : 1e9);
+    for (int pillar = 0; pillar < 12; ++pillar) {
+      const Eigen::Vector2d at(2 + 0.45 * pillar, (pillar % 2 ? 1 : -1) * (0.4 + 0.1 * pillar));
+      const Eigen::Vector2d flat = ray.head<2>().normalized();
+      const double along = at.dot(flat), aside = std::abs(at.x() * flat.y() - at.y() * flat.x());
+      if (aside < 0.1) range = std::min(range, along / ray.head<2>().norm());
+    }
+    sweep.points.push_back({(ray * (range + random.uniform(-0.02, 0.02))).cast<float>(), 0.0f, 0.0f,
+                            static_cast<std::uint16_t>(n % kLines)});
+  }
+  return sweep;
+}
+
+TEST(IsolatedReturns, LinesOfARosetteAreNoRings) {
+  Random random(4);
+  const Sweep sweep = rosette(random);
+  IsolatedReturns returns;
+  const auto& isolated = returns.find(sweep);
+  const auto wrong = std::count(isolated.begin(), isolated.end(), 1);
+  EXPECT_LT(static_cast<double>(wrong), 0.05 * static_cast<double>(sweep.points.size()));
+}
+
+TEST(IsolatedReturns, AMaskOfTooManyIsNone) {
+  Random random(5);
+  std::vector<bool> phantom;
+  const Sweep sweep = round_room(20, 0.7, random, phantom);
+  IsolatedReturns returns;
+  EXPECT_TRUE(returns.find(sweep).empty());
+  EXPECT_TRUE(returns.scattered());
 }
 
 TEST(IsolatedReturns, ASweepWithoutRingsHasNone) {

@@ -270,6 +270,39 @@ TEST(ScanInput, TheAttitudeIsTheImus) {
   EXPECT_NEAR(with_attitude(Pose3::level({1, 2, 0.7}, 3), R).yaw(), 0.7, 1e-12);
 }
 
+TEST(ScanInput, TheImusMountingCountsForItsOwnFrameAndForNone) {
+  Platform p = robot();
+  p.imu = ImuConfig{};
+  p.imu->mounting.roll = M_PI;
+  for (const char* shared : {"imu", "livox_frame"}) {
+    p.imu->frame = shared;
+    p.lidars[0].frame = "livox_frame";
+    for (const char* frame : {"", shared}) {
+      ScanInput input(p);
+      EXPECT_TRUE(input.mounting_of_imu(frame)->orientation.isApprox(p.imu->mounting.pose().orientation));
+      for (std::uint64_t n = 0; n < 100; ++n)
+        ASSERT_TRUE(input.add(ImuSample{kStart + n * 10'000'000, {0, 0, 0}, {0, 0, -9.81}}, frame));
+      const auto attitude = input.tilt()->at(kStart + 900'000'000);
+      ASSERT_TRUE(attitude) << frame << ": " << attitude.error().text;
+      EXPECT_NEAR(roll_pitch(*attitude).norm(), 0.0, 0.01);
+    }
+  }
+}
+
+TEST(ScanInput, AnImuWithoutStampsIsRefusedAndNotCalledSilent) {
+  Platform p = robot();
+  p.imu = ImuConfig{};
+  ScanInput input(p);
+  for (std::uint64_t n = 0; n < 30; ++n) {
+    EXPECT_EQ(input.add(ImuSample{0, {0, 0, 0}, {0, 0, 9.81}}, "imu").reason(), Reason::sensor_times);
+    Sweep sweep = of({{3, 0, 0}});
+    sweep.stamp = kStart + n * 100'000'000;
+    const auto scan = input.add(sweep, 0, "lidar", standing);
+    ASSERT_TRUE(scan && *scan);
+    EXPECT_TRUE((*scan)->warnings.empty());
+  }
+}
+
 TEST(ScanInput, AnImuThatIsMountedOtherwiseStopsTheScans) {
   Platform p = robot();
   p.imu = ImuConfig{};
