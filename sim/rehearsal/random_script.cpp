@@ -9,8 +9,8 @@
 namespace adit::sim {
 namespace {
 
-constexpr std::array kVerbs{"take",  "release", "lock",  "unlock", "grant",  "goto",
-                            "drive", "stop",    "reset", "mode",   "convoy", "peeloff"};
+constexpr std::array kVerbs{"take", "release", "lock", "unlock", "grant",   "goto", "drive",
+                            "stop", "reset",   "mode", "convoy", "peeloff", "yield"};
 
 std::string number(double value) {
   char text[32];
@@ -50,6 +50,7 @@ std::string draw_command(const RandomScript& spec, const Scenario& scenario, con
       if (other != robot && (followers.empty() || random.chance(0.5))) followers += " " + other;
     return followers.empty() ? "convoy stop " + robot : "convoy start " + robot + followers;
   }
+  if (verb == "yield") return head + (random.chance(0.7) ? " on" : " off");
   if (verb == "reset") return random.chance(0.4) ? head + " --override" : head;
   if (verb == "mode") {
     static constexpr std::array modes{"hold", "waypoint", "manual", "smart_joystick", "explore"};
