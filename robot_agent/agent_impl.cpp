@@ -99,16 +99,20 @@ UnitParams Agent::Impl::sensors_unit() {
   UnitParams unit{.name = "sensors"};
   unit.make = [this](Executor& strand) -> std::unique_ptr<Component> {
     return std::make_unique<Scans>(
-        strand, Log(params.log, params.name), params.name, params.platform, context->scans,
-        [notifier = context->notifier.get()](const Notice& notice) { notifier->send(notice); },
+        strand, Log(params.log, params.name), params.platform, context->scans,
+        [&inputs = *context->inputs, &strand](const InputFault& fault) {
+          inputs.report(fault, strand.now());
+        },
         params.perception == PerceptionLevel::off ? 0 : ++context->odometries);
   };
   unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
-    auto readers =
-        read_sensors(io_of(*slot, *robot_wire), params.platform, [slot = std::weak_ptr<ComponentSlot>(slot)] {
+    auto readers = read_sensors(
+        io_of(*slot, *robot_wire), params.platform,
+        [slot = std::weak_ptr<ComponentSlot>(slot)] {
           const auto taken = slot.lock();
           return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
-        });
+        },
+        context->odometry_source);
     if (!readers) return readers.error();
     return std::shared_ptr<void>(std::make_shared<SensorReaders>(std::move(*readers)));
   };
@@ -128,6 +132,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (!radio_edge) return radio_edge.error();
   e.radio = std::move(*radio_edge);
   e.wire = &radio;
+  e.robot_wire = &robot;
 
   e.restored = restore_state(params.disk);
   if (params.start_given)
@@ -169,7 +174,18 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   handlers.rival = [with_command](const wire::ParticipantId& writer, Time received) {
     with_command([&](CommandComponent& component) { component.rival(writer, received); });
   };
-  auto driver = Driver::open(io_of(*command.slot(), robot), params.velocity, std::move(handlers));
+  handlers.fault = [&e, &strand](const InputFault& fault) { e.inputs->report(fault, strand.now()); };
+  e.inputs = std::make_unique<InputFaults>(
+      params.name, InputFaults::Outputs{[notifier = e.notifier.get(),
+                                         log = Log(params.log, params.name, &strand)](const Notice& notice) {
+                                          log.warn(notice.code + ": " + notice.text);
+                                          notifier->send(notice);
+                                        },
+                                        [&e](const contract::ComponentHealth& row) {
+                                          if (e.watch) e.watch->note(row);
+                                        }});
+  auto driver =
+      Driver::open(io_of(*command.slot(), robot), params.velocity, std::move(handlers), e.odometry_source);
   if (!driver) return driver.error();
   e.driver = std::move(*driver);
 
@@ -210,9 +226,9 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
        [with_command](const Eigen::Vector3d& goal, bool replace, const auto& done) {
          with_command([&](CommandComponent& component) { component.check_goal(goal, replace, done); });
        },
-       [&e, &strand](const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from) {
+       [&e](const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from, Time received) {
          if (beacon)
-           e.peers.hear_beacon(*beacon, from, strand.now());
+           e.peers.hear_beacon(*beacon, from, received);
          else
            e.peers.refuse_beacon(BeaconFault::malformed);
        },

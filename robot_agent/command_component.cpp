@@ -60,7 +60,8 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
                   {commands_.authority(), context.peers, behaviour_, frames_, notices_}),
       telemetry_({*context.radio, *context.wire, context.rate, *context.driver, *context.watch, frames_,
                   commands_, behaviour_}),
-      rivals_(now()) {}
+      rivals_(now()),
+      topics_(used_topics(params.platform, params.velocity)) {}
 
 void Agent::CommandComponent::battery(float charge) {
   protect([&] { safeguards_.battery(charge, now()); });
@@ -224,6 +225,7 @@ Result<void> Agent::CommandComponent::on_start() {
   timers_.push_back(every(kStatusPeriod, [this] {
     commands_.tick(now());
     safeguards_.tick(now());
+    watch_topics(now());
     telemetry_.send_periodic(now());
   }));
   return {};
@@ -275,6 +277,28 @@ void Agent::CommandComponent::keep() {
 
 void Agent::CommandComponent::watch_driver() {
   if (telemetry_.driver_fell_silent(now())) notices_.driver_lost();
+}
+
+void Agent::CommandComponent::watch_topics(Time at) {
+  context_.driver->look();
+  bool velocities = false;
+  for (const InputFault& clash : type_clashes(*context_.robot_wire, topics_)) {
+    context_.inputs->report(clash, at);
+    velocities = velocities || clash.topic == "cmd_vel";
+  }
+  // A driver that is just starting may find the agent's writer late.
+  constexpr int kLooks = 3;
+  disobeyed_ = frames_.alive(at) && !context_.driver->obeyed() ? disobeyed_ + 1 : 0;
+  if (disobeyed_ >= kLooks && !velocities)
+    context_.inputs->report(
+        {"cmd_vel",
+         "velocities_unread",
+         Severity::error,
+         {Reason::driver_silent,
+          "nobody reads /cmd_vel, although odometry arrives: the robot will not move; does "
+          "its driver read that topic on this domain?"}},
+        at);
+  context_.inputs->tick(at);
 }
 
 void Agent::CommandComponent::watch_namesakes(Time at) {

@@ -23,6 +23,7 @@
 #include "robot_agent/motion/pose_correction.hpp"
 #include "robot_agent/motion/rival.hpp"
 #include "robot_agent/motion/scans.hpp"
+#include "robot_agent/motion/topic_types.hpp"
 #include "robot_agent/notices/notices.hpp"
 #include "robot_agent/perception/keyframe_store.hpp"
 #include "robot_agent/perception/map_keeper.hpp"
@@ -51,6 +52,8 @@ struct Agent::Context {
 
   std::unique_ptr<Notifier> notifier{};  ///< From any thread.
   std::unique_ptr<RadioEdge> radio{};
+  std::unique_ptr<InputFaults> inputs{};  ///< From any thread.
+  std::shared_ptr<OneSource> odometry_source{std::make_shared<OneSource>()};
   std::unique_ptr<Driver> driver{};
   PeerTable peers;
   Directory directory;
@@ -74,6 +77,7 @@ struct Agent::Context {
   CommandComponent* command_component{};  ///< Null while the command component is not running.
   std::uint32_t instances{};              ///< Number of instances of the command component so far.
   wire::Participant* wire{};              ///< The radio domain.
+  wire::Participant* robot_wire{};        ///< The robot domain.
   wire::RateControl rate{};               ///< Rate of RobotState; the rest of the telemetry follows.
 };
 
@@ -133,6 +137,8 @@ class Agent::CommandComponent : public Component {
   /// Zero and hold until an operator sets the pose.
   void place_unknown(const std::string& why);
   void watch_driver();
+  /// Looks at who else uses the topics of the robot domain.
+  void watch_topics(Time at);
   /// Handles odometry that started again elsewhere: zero, hold, and a new local map.
   void odometry_jumped();
   Result<void> set_pose(const Pose2& pose);
@@ -189,6 +195,8 @@ class Agent::CommandComponent : public Component {
   std::optional<Time> jump_reported_{};
   int comparisons_{};  ///< Scans that did not fit the stored keyframes.
   RivalWatch rivals_;
+  std::vector<TopicUse> topics_;             ///< Of the robot domain.
+  int disobeyed_{};                          ///< Looks in a row without a reader of the velocities.
   bool gives_way_{};                         ///< It gives way to another robot of its name.
   RateLimit<bool> namesakes_reported_{10s};  // The key is `gives_way_`.
   RateLimit<int> refusals_reported_{10s};    // Under one key: a stranger may invent any number of names.

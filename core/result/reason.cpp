@@ -86,6 +86,8 @@ constexpr std::array kRows{
     Row{Reason::sensor_silent, "sensor_silent", "a sensor of the platform's file sends nothing"},
     Row{Reason::localisation_lost, "localisation_lost",
         "the odometry lost its way: the lidar does not fit what it saw before"},
+    Row{Reason::type_differs, "type_differs", "a topic has another type on the other side"},
+    Row{Reason::two_sources, "two_sources", "two participants send what one driver should"},
     Row{Reason::bad_argument, "bad_argument", "an argument is wrong"},
     Row{Reason::unknown_robot, "unknown_robot", "no robot of that name has been heard"},
     Row{Reason::unknown_command, "unknown_command", "no such command"},

@@ -74,6 +74,8 @@ enum class Reason : std::uint16_t {
   lidar_mounting = 247,     ///< The lidar cannot be where its mounting says.
   sensor_silent = 248,      ///< A sensor of the platform's file sends nothing, or has another clock.
   localisation_lost = 249,  ///< The odometry does not know where the robot is.
+  type_differs = 250,       ///< A topic has another type on the other side.
+  two_sources = 251,        ///< Two participants write what one driver should.
 
   // Input that was typed or sent.
   bad_argument = 301,

@@ -46,7 +46,7 @@ void SensorCheck::take(const sensor_msgs::msg::LaserScan& scan, Time received) {
   Lidar& taken = lidars_.front();
   taken.planar = true;
   taken.stream.note(nanoseconds_of(scan.header()), scan.header().frame_id(), received);
-  take(to_sweep(scan, 0.0), taken, scan.header().frame_id());
+  take(to_sweep(scan, 0.0, 1.0 / taken.config.rate), taken, scan.header().frame_id());
 }
 
 void SensorCheck::take(const Result<perception::Sweep>& sweep, Lidar& lidar, const std::string& frame) {
@@ -74,12 +74,12 @@ void SensorCheck::take(const sensor_msgs::msg::Imu& imu, Time received) {
   const perception::ImuSample sample = imu_sample_of(imu);
   const std::string& frame = imu.header().frame_id();
   imu_.note(sample.stamp, frame, received);
-  if (!sample.gyro.allFinite() || !sample.accel.allFinite()) {
+  if (sample.stamp == 0 || !sample.gyro.allFinite() || !sample.accel.allFinite()) {
     ++imu_.unusable;
-    imu_.error = "a sample is no number";
+    imu_.error = sample.stamp == 0 ? "they have no stamp" : "a sample is no number";
     return;
   }
-  const auto T_base_imu = frame.empty() ? Result<Pose3>(platform_.imu->mounting.pose()) : input_.find(frame);
+  const auto T_base_imu = input_.mounting_of_imu(frame);
   if (!T_base_imu) return;
   const Eigen::Vector3d rate = T_base_imu->orientation * sample.gyro;
   if (!turning_) {
@@ -98,9 +98,9 @@ void SensorCheck::take(const nav_msgs::msg::Odometry& odometry, Time received) {
   const std::uint64_t stamp = nanoseconds_of(odometry.header());
   odometry_.note(stamp, odometry.header().frame_id(), received);
   const Eigen::Quaterniond q = quaternion_of(odometry.pose().pose().orientation());
-  if (!(q.norm() > 1e-6 && q.norm() < 1e6)) {
+  if (!is_rotation(q) || stamp == 0) {
     ++odometry_.unusable;
-    odometry_.error = "its orientation is no quaternion";
+    odometry_.error = stamp == 0 ? "they have no stamp" : "its orientation is no quaternion";
     return;
   }
   if (turning_) turns_.add_yaw(stamp, Pose3{{0, 0, 0}, q.normalized()}.yaw());
@@ -111,6 +111,44 @@ void SensorCheck::take(const tf2_msgs::msg::TFMessage& transforms, Time) {
     (void)input_.add_transform(
         each.header().frame_id(), each.child_frame_id(),
         {vector_of(each.transform().translation()), quaternion_of(each.transform().rotation())});
+}
+
+void SensorCheck::take(const sensor_msgs::msg::BatteryState& battery, const wire::ParticipantId& sender) {
+  const auto charge = charge_.take(battery.percentage(), sender);
+  if (battery_ && !battery_->ok) return;
+  const std::string found = !charge       ? charge.error().text
+                            : *charge < 0 ? "not measured, by the driver"
+                                          : std::to_string(std::lround(*charge * 100)) + " %";
+  battery_ = CheckLine{charge.ok(), "battery /battery_state: charge", found, ""};
+}
+
+void SensorCheck::two_sources(const std::string& topic, const OneSource& source) {
+  two_sources_[topic] = {false, "/" + topic + ": source", agent::two_sources(topic, source).cause.text, ""};
+}
+
+void SensorCheck::look(const wire::Participant& wire, VelocityType velocity) {
+  topics_.clear();
+  const auto used = used_topics(platform_, velocity);
+  bool velocities = false;
+  for (const InputFault& clash : type_clashes(wire, used)) {
+    topics_.push_back({false, "/" + clash.topic + ": type", clash.cause.text, ""});
+    velocities = velocities || clash.topic == "cmd_vel";
+  }
+  if (velocities) return;
+  // An agent reads what it writes, to notice others.
+  const auto all = wire.endpoints(wire::topics::kCmdVel.name);
+  const auto writes = [&](const wire::ParticipantId& participant) {
+    return std::any_of(all.begin(), all.end(), [&](const wire::RemoteEndpoint& endpoint) {
+      return endpoint.writes && endpoint.participant == participant;
+    });
+  };
+  const auto readers = std::count_if(all.begin(), all.end(), [&](const wire::RemoteEndpoint& endpoint) {
+    return !endpoint.writes && !writes(endpoint.participant);
+  });
+  topics_.push_back({readers > 0, "/cmd_vel: reader",
+                     readers > 0 ? "the driver reads it"
+                                 : "nobody reads it; is the driver running, on this topic and domain?",
+                     ""});
 }
 
 }  // namespace adit::agent

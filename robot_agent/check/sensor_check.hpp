@@ -14,7 +14,10 @@
 #include "perception/input/turn_check.hpp"
 #include "robot_agent/check/config_lines.hpp"
 #include "robot_agent/check/ground_fit.hpp"
+#include "robot_agent/motion/charge_input.hpp"
 #include "robot_agent/motion/sensor_readers.hpp"
+#include "robot_agent/motion/topic_types.hpp"
+#include "sensor_msgs/msg/BatteryState.h"
 
 namespace adit::agent {
 
@@ -36,6 +39,11 @@ class SensorCheck {
   void take(const sensor_msgs::msg::Imu& imu, Time received);
   void take(const nav_msgs::msg::Odometry& odometry, Time received);
   void take(const tf2_msgs::msg::TFMessage& transforms, Time received);
+  void take(const sensor_msgs::msg::BatteryState& battery, const wire::ParticipantId& sender);
+  /// Two participants send the topic.
+  void two_sources(const std::string& topic, const OneSource& source);
+  /// Looks at who reads and writes the topics, and with which types.
+  void look(const wire::Participant& wire, VelocityType velocity);
 
   /// The robot no longer stands: from now on the gyro is compared with the odometry.
   void begin_turn() { turning_ = true; }
@@ -76,6 +84,10 @@ class SensorCheck {
   perception::ScanInput input_;
   std::vector<Lidar> lidars_{};
   Stream imu_{}, odometry_{};
+  ChargeInput charge_{};
+  std::optional<CheckLine> battery_{};              ///< By its newest message; one that is wrong stays.
+  std::map<std::string, CheckLine> two_sources_{};  ///< By topic.
+  std::vector<CheckLine> topics_{};
   bool turning_{false};
   Eigen::Vector3d force_{0, 0, 0}, gyro_{0, 0, 0};  ///< Sums while standing, base_link.
   std::size_t standing_{};                          ///< Samples in them.

@@ -58,6 +58,9 @@ std::vector<CheckLine> SensorCheck::report(bool turn) const {
     if (standing_ > 0) report_imu(out);
     if (turn && standing_ > 0) report_turn(out);
   }
+  if (battery_) out.push_back(*battery_);
+  for (const auto& [topic, line] : two_sources_) out.push_back(line);
+  out.insert(out.end(), topics_.begin(), topics_.end());
   return out;
 }
 

@@ -6,6 +6,8 @@
 #include "core/exec/executor.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/wire/participant.hpp"
+#include "robot_agent/motion/input_faults.hpp"
+#include "robot_agent/motion/one_source.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 
 namespace adit::wire {
@@ -23,17 +25,20 @@ class Driver {
   struct Handlers {
     std::function<void(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received)>
         odometry{};
-    std::function<void(float charge)> battery{};  ///< State of charge, [0, 1].
+    std::function<void(float charge)> battery{};  ///< State of charge, [0, 1]; negative: unknown.
     /// Velocity that a program requests.
     std::function<void(const Twist2& velocity, Time received)> external{};
     /// Reports that another participant wrote a velocity.
     std::function<void(const wire::ParticipantId& writer, Time received)> rival{};
+    /// Reports what arrives and cannot be used.
+    std::function<void(const InputFault& fault)> fault{};
   };
 
   /// `io`: the command component's, on the robot domain; strand and participant must outlive the driver's
-  /// last callback. Errors: those of the participant.
+  /// last callback. `source`: of the odometry, shared with its other readers. Errors: those of the
+  /// participant.
   static Result<std::unique_ptr<Driver>> open(const wire::ComponentIo& io, VelocityType type,
-                                              Handlers handlers);
+                                              Handlers handlers, std::shared_ptr<OneSource> source);
   ~Driver();
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
@@ -42,12 +47,17 @@ class Driver {
   void close();
   /// Writes a velocity, body frame. The participant counts a failed write; the next one follows within 50 ms.
   void write(const Twist2& velocity);
+  /// Looks at the endpoints of others: reads /external/cmd_vel in the type in which it is written. About once
+  /// a second.
+  void look();
+  /// Whether another participant reads the velocities.
+  bool obeyed() const;
   /// Number of malformed samples on the driver's topics since the participant was opened.
   std::uint64_t malformed() const;
 
  private:
-  Driver();
   struct Endpoints;
+  explicit Driver(std::unique_ptr<Endpoints> endpoints);
   std::unique_ptr<Endpoints> endpoints_;
 };
 

@@ -2,6 +2,7 @@
 #include "robot_agent/motion/scans.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <utility>
 
@@ -21,16 +22,17 @@ constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the l
 constexpr std::uint64_t kImuWait = 60'000'000;       // ns; a longer gap is bridged by the driver's odometry
 constexpr double kJump = 1.0;                        // m between two samples: another odometry frame
 constexpr int kMaxNotDeskewed = 5;                   // consecutive scans before the operator is warned
+constexpr Duration kOdometryHeard = 200ms;           // two samples of the slowest odometry
+constexpr double kClocksApart = 0.5;                 // s; longer than any delay of a scan in its driver
 
 }  // namespace
 
-Scans::Scans(Executor& strand, Log log, std::string robot, const Platform& platform,
-             const ScanService& output, Notify notify, std::uint32_t instance)
+Scans::Scans(Executor& strand, Log log, const Platform& platform, const ScanService& output, Report report,
+             std::uint32_t instance)
     : Component("sensors", strand, std::move(log), {.beat = 100ms}),
-      robot_(std::move(robot)),
       lidars_(platform.all_lidars()),
       output_(output),
-      notify_(std::move(notify)),
+      report_(std::move(report)),
       input_(platform),
       platform_(platform),
       instance_(instance),
@@ -50,17 +52,18 @@ void Scans::take(const sensor_msgs::msg::LaserScan& scan, Time received) {
     const std::string frame = perception::frame_name(scan.header().frame_id());
     // A scan in base_link is of a lidar above it.
     const bool above = frame.empty() || frame == "base_link";
-    take(to_sweep(scan, above ? lidars_[0].mounting.z : 0.0), 0, frame, received);
+    take(to_sweep(scan, above ? lidars_[0].mounting.z : 0.0, 1.0 / lidars_[0].rate), 0, frame, received);
   });
 }
 
 void Scans::take(const sensor_msgs::msg::Imu& imu, Time) {
   protect([&] {
+    if (!platform_.imu) return;
     const auto added = input_.add(imu_sample_of(imu), imu.header().frame_id());
-    if (!added) refuse(added.error());
-    if (added && odometry_) {
+    if (!added) return refuse(platform_.imu->topic, added.error());
+    if (odometry_) {
       // In the axes of base_link, in m/s2.
-      const auto mount = input_.find(imu.header().frame_id());
+      const auto mount = input_.mounting_of_imu(imu.header().frame_id());
       perception::ImuSample sample = imu_sample_of(imu);
       if (input_.imu_in_g()) sample.accel *= perception::kStandardGravity;
       if (mount)
@@ -68,18 +71,23 @@ void Scans::take(const sensor_msgs::msg::Imu& imu, Time) {
                                              mount->orientation * sample.accel});
     }
     if (!input_.imu_in_g() || std::exchange(in_g_reported_, true)) return;
-    notice(Severity::warning, "imu_in_g", Reason::none,
-           "the IMU measures in g instead of m/s2; its values are scaled");
+    warn(platform_.imu->topic, "imu_in_g", Reason::none,
+         "the IMU measures in g instead of m/s2; its values are scaled");
   });
 }
 
-void Scans::take(const nav_msgs::msg::Odometry& odometry, Time) {
+void Scans::take(const nav_msgs::msg::Odometry& odometry, Time received) {
   protect([&] {
     const auto& p = odometry.pose().pose().position();
     const Eigen::Quaterniond q = quaternion_of(odometry.pose().pose().orientation());
     const Eigen::Vector3d at(p.x(), p.y(), p.z());
-    if (!at.allFinite() || !(q.norm() > 1e-6 && q.norm() < 1e6)) return;  // The command component says so.
+    if (!at.allFinite() || !is_rotation(q)) return;  // The command component says so.
     const std::uint64_t stamp = nanoseconds_of(odometry.header());
+    if (stamp == 0)
+      return warn("odom", "not_deskewed", Reason::sensor_times,
+                  "the odometry on /odom has no stamps: scans are not corrected for motion; its driver must "
+                  "set the time of each in the header");
+    odometry_heard_ = received;
     const auto last = history_.at(history_.newest());
     const bool set_back = stamp < history_.newest() && history_.newest() - stamp > 500'000'000;
     if (set_back || (last && (last->position - at).norm() > kJump)) {
@@ -100,14 +108,18 @@ void Scans::take(const tf2_msgs::msg::TFMessage& transforms, Time) {
       const auto set = input_.add_transform(
           each.header().frame_id(), each.child_frame_id(),
           {vector_of(each.transform().translation()), quaternion_of(each.transform().rotation())});
-      if (!set) refuse(set.error());
+      if (!set) refuse("tf_static", set.error());
     }
   });
 }
 
+void Scans::two_sources(const std::string& topic, const OneSource& source) {
+  report_(agent::two_sources(topic, source));
+}
+
 void Scans::take(Result<perception::Sweep> sweep, std::size_t lidar, const std::string& frame,
                  Time received) {
-  if (!sweep) return refuse(sweep.error());
+  if (!sweep) return refuse(lidars_[lidar].topic, sweep.error());
   if (waiting_[lidar]) pass_on(lidar);
   waiting_[lidar] = {std::move(*sweep), frame, received};
   if (!is_ahead(waiting_[lidar]->sweep)) pass_on(lidar);
@@ -146,17 +158,12 @@ void Scans::pass_on(std::size_t lidar) {
   auto scan = input_.add(waiting.sweep, lidar, waiting.frame, [&](std::uint64_t stamp) {
     return located ? odometry_->at(stamp) : history_.at(stamp);
   });
-  if (!scan) return refuse(scan.error());
+  if (!scan) return refuse(lidars_[lidar].topic, scan.error());
   if (!*scan) return;  // A scan is made when the first lidar's sweep comes.
   perception::Scan& complete = **scan;
-  // The first sweep begins before the first pose.
-  not_deskewed_ = waiting.sweep.timed && !complete.deskewed && history_.size() > 0 ? not_deskewed_ + 1 : 0;
-  if (not_deskewed_ >= kMaxNotDeskewed)
-    notice(Severity::warning, "not_deskewed", Reason::sensor_times,
-           "the odometry has no poses for the times of the scans, which are not corrected for motion; do "
-           "lidar and odometry use one clock?");
+  judge_clock(waiting.sweep, complete.deskewed);
   for (const perception::ScanWarning& warning : complete.warnings)
-    notice(Severity::warning, warning.code, warning.reason, warning.text);
+    warn(lidars_[lidar].topic, warning.code, warning.reason, warning.text);
   std::optional<OdometryReport> report;
   if (located && complete.stamp != 0) report = locate(complete);
   // The odometry knows roll and pitch better than a filter of the IMU alone.
@@ -167,16 +174,43 @@ void Scans::pass_on(std::size_t lidar) {
        {.deadline = kScanDeadline}, [](const Result<void>&) {});
 }
 
-void Scans::refuse(const Error& error) {
-  // A message that came late is normal; only the newest counts.
-  if (error.reason == Reason::sample_stale) return;
-  notice(Severity::error, "sensor_refused", error.reason, error.text);
+void Scans::judge_clock(const perception::Sweep& sweep, bool deskewed) {
+  const std::uint64_t end = perception::ScanInput::end_of(sweep), newest = history_.newest();
+  // Odometry that is not heard any more says nothing about its clock.
+  const bool comparable = newest != 0 && now() - odometry_heard_ < kOdometryHeard;
+  const double ahead =
+      comparable && end != 0 ? static_cast<double>(static_cast<std::int64_t>(end - newest)) * 1e-9 : 0.0;
+  const bool apart = std::abs(ahead) > kClocksApart;
+  // The first sweep begins before the first pose.
+  const bool bad = comparable && (apart || (sweep.timed && !deskewed));
+  not_deskewed_ = bad ? not_deskewed_ + 1 : 0;
+  if (not_deskewed_ < kMaxNotDeskewed) return;
+  char text[200];
+  if (end == 0)
+    std::snprintf(
+        text, sizeof text,
+        "the scans have no stamps, and are not corrected for motion: the lidar's driver must set the "
+        "time of each in the header");
+  else if (apart)
+    std::snprintf(
+        text, sizeof text,
+        "lidar and odometry have different clocks, and scans are not corrected for motion: the scans "
+        "are %.1f s %s the odometry; let both drivers use one clock",
+        std::abs(ahead), ahead > 0 ? "ahead of" : "behind");
+  else
+    std::snprintf(text, sizeof text,
+                  "the odometry has no poses for the times of the scans, which are not corrected for motion");
+  warn(lidars_[0].topic, "not_deskewed", Reason::sensor_times, text);
 }
 
-void Scans::notice(Severity severity, const char* code, Reason reason, const std::string& text) {
-  if (!reported_.pass(code + std::string(adit::name(reason)), now())) return;
-  log().warn(text);
-  if (notify_) notify_({{}, severity, code, reason, robot_ + ": " + text});
+void Scans::refuse(const std::string& topic, const Error& error) {
+  // A message that came late is normal; only the newest counts.
+  if (error.reason == Reason::sample_stale) return;
+  report_({topic, "sensor_refused", Severity::error, error});
+}
+
+void Scans::warn(const std::string& topic, const char* code, Reason reason, const std::string& text) {
+  report_({topic, code, Severity::warning, {reason, text}});
 }
 
 Result<perception::Sweep> to_sweep(const sensor_msgs::msg::PointCloud2& cloud, double duration) {
@@ -189,7 +223,7 @@ Result<perception::Sweep> to_sweep(const sensor_msgs::msg::PointCloud2& cloud, d
                         nanoseconds_of(cloud.header()), duration);
 }
 
-Result<perception::Sweep> to_sweep(const sensor_msgs::msg::LaserScan& scan, double height) {
+Result<perception::Sweep> to_sweep(const sensor_msgs::msg::LaserScan& scan, double height, double duration) {
   const double first = scan.angle_min(), step = scan.angle_increment();
   const std::size_t count = scan.ranges().size();
   if (!std::isfinite(first) || !std::isfinite(step) || std::abs(first) > 10.0 ||
@@ -199,8 +233,15 @@ Result<perception::Sweep> to_sweep(const sensor_msgs::msg::LaserScan& scan, doub
   sweep.stamp = nanoseconds_of(scan.header());
   sweep.planar = true;
   sweep.points.reserve(count);
-  const float each = scan.time_increment();
-  sweep.timed = each > 0 && each * static_cast<float>(count) < 1.0f;
+  const float each = scan.time_increment(), all = each * static_cast<float>(count);
+  if (!std::isfinite(all) || std::abs(all) > perception::PointLayout::kLongest * duration) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "the scan's time_increment %.4g times its %zu rays is no sweep of %.3g s: it is in seconds",
+                  static_cast<double>(each), count, duration);
+    return Error{Reason::sensor_times, text};
+  }
+  sweep.timed = each > 0;
   for (std::size_t i = 0; i < count; ++i) {
     const float range = scan.ranges()[i];
     if (!std::isfinite(range) || range < scan.range_min() || range > scan.range_max()) continue;

@@ -12,8 +12,7 @@
 #include "core/geometry/pose.hpp"
 #include "perception/input/scan_input.hpp"
 #include "perception/odometry/lidar_odometry.hpp"
-#include "robot_agent/common/notice.hpp"
-#include "robot_agent/common/rate_limit.hpp"
+#include "robot_agent/motion/input_faults.hpp"
 #include "robot_agent/motion/pose_correction.hpp"
 #include "robot_agent/motion/pose_history.hpp"
 
@@ -47,17 +46,16 @@ using ScanService = Service<LidarScan, void>;
 /// Turns what the sensors send into scans (perception/input), on a strand of its own, so that they never
 /// delay the command strand.
 ///
-/// A message that cannot be used is refused with a reason that all operators are sent, at most every 5 s.
-/// Nothing of it is passed on, so the terrain is no longer fresh after half a second and autonomous modes
-/// stand.
+/// A message that cannot be used is refused with a reason (InputFaults). Nothing of it is passed on, so the
+/// terrain is no longer fresh after half a second and autonomous modes stand.
 class Scans : public Component {
  public:
-  using Notify = std::function<void(const Notice&)>;
+  using Report = std::function<void(const InputFault&)>;
 
   /// `instance`: number of this instance since the start of the agent, from 1; 0: without odometry of its
   /// own.
-  Scans(Executor& strand, Log log, std::string robot, const Platform& platform, const ScanService& output,
-        Notify notify, std::uint32_t instance = 0);
+  Scans(Executor& strand, Log log, const Platform& platform, const ScanService& output, Report report,
+        std::uint32_t instance = 0);
 
   /// On its strand; nothing when it does not run. `lidar`: index of Platform::all_lidars().
   void take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received);
@@ -65,6 +63,8 @@ class Scans : public Component {
   void take(const sensor_msgs::msg::Imu& imu, Time received);
   void take(const nav_msgs::msg::Odometry& odometry, Time received);
   void take(const tf2_msgs::msg::TFMessage& transforms, Time received);
+  /// Two participants send the topic.
+  void two_sources(const std::string& topic, const OneSource& source);
 
  private:
   struct Waiting {
@@ -79,29 +79,31 @@ class Scans : public Component {
   /// Moves the odometry to the end of a sweep of the first lidar; makes it when it is the first sweep.
   bool advance_odometry(const perception::Sweep& sweep);
   std::optional<OdometryReport> locate(const perception::Scan& scan);
-  void refuse(const Error& error);
-  void notice(Severity severity, const char* code, Reason reason, const std::string& text);
+  void refuse(const std::string& topic, const Error& error);
+  void warn(const std::string& topic, const char* code, Reason reason, const std::string& text);
+  /// Warns of scans that cannot be corrected for motion.
+  void judge_clock(const perception::Sweep& sweep, bool deskewed);
 
-  std::string robot_;
   std::vector<LidarConfig> lidars_;
   const ScanService& output_;
-  Notify notify_;
+  Report report_;
   perception::ScanInput input_;
   PoseHistory history_{};
   Platform platform_;
   std::uint32_t instance_;
   std::optional<perception::LidarOdometry> odometry_{};  ///< Made with the first sweep.
   std::vector<std::optional<Waiting>> waiting_;          ///< For odometry as new as the sweep, by lidar.
-  RateLimit<std::string> reported_{5s};
   bool in_g_reported_{false};
-  int not_deskewed_{0};  ///< Consecutive scans that were not corrected for motion.
+  int not_deskewed_{0};  ///< Consecutive scans that were not corrected for motion, or of another clock.
+  Time odometry_heard_{};
 };
 
 /// The points of a cloud that has float32 x, y and z, in its frame. `duration`: of a sweep, s.
 /// Errors: malformed when the layout does not fit the data; sensor_times.
 Result<perception::Sweep> to_sweep(const sensor_msgs::msg::PointCloud2& cloud, double duration);
 /// The points of a planar scan, at `height` (m) in its frame; what met nothing, or is out of the scanner's
-/// range, is left out. Reason::malformed when its angles are no numbers or turn more than once.
-Result<perception::Sweep> to_sweep(const sensor_msgs::msg::LaserScan& scan, double height);
+/// range, is left out. `duration`: of a sweep, s. Errors: malformed when its angles are no numbers or turn
+/// more than once; sensor_times when its rays take longer than a sweep.
+Result<perception::Sweep> to_sweep(const sensor_msgs::msg::LaserScan& scan, double height, double duration);
 
 }  // namespace adit::agent

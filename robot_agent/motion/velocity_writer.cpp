@@ -60,4 +60,8 @@ void VelocityWriter::write(const Twist2& velocity) {
   }
 }
 
+std::size_t VelocityWriter::readers() const {
+  return endpoint_ ? endpoint_->twist.matched() + endpoint_->stamped.matched() : 0;
+}
+
 }  // namespace adit::agent

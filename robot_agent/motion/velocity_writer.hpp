@@ -27,6 +27,8 @@ class VelocityWriter {
   /// driver's clock may differ from the agent's. The participant counts a failed write. Does nothing before
   /// make().
   void write(const Twist2& velocity);
+  /// Number of readers of other participants that receive it.
+  std::size_t readers() const;
 
  private:
   struct Endpoint;

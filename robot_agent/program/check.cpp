@@ -61,8 +61,18 @@ int check_sensors(const RobotConfig& config, const wire::FastDdsParams& robot, c
   {
     LiveRuntime runtime;
     const auto strand = runtime.strand("check");
-    auto readers = read_sensors({**wire, *strand, nullptr}, config.platform, [&check] { return &check; });
+    const wire::ComponentIo io{**wire, *strand, nullptr};
+    auto readers = read_sensors(
+        io, config.platform, [&check] { return &check; }, std::make_shared<OneSource>());
     if (!readers) return failed(readers.error());
+    std::unique_ptr<wire::RawReader> battery;
+    if (const auto opened =
+            io.open(battery, wire::topics::kBattery,
+                    [&check](const sensor_msgs::msg::BatteryState& sample, const wire::SampleInfo& info) {
+                      check.take(sample, info.sender);
+                    });
+        !opened)
+      return failed(opened.error());
     std::cout << "Leave the robot standing on level ground for " << seconds(params.standing) << " s.\n"
               << std::flush;
     never.wait(params.standing);
@@ -83,6 +93,7 @@ int check_sensors(const RobotConfig& config, const wire::FastDdsParams& robot, c
     }
     strand->post([&] {
       watch = {};
+      check.look(**wire, config.velocity);
       report = check.report(turn);
       reported.open();
     });

@@ -164,7 +164,7 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                                                          const wire::SampleInfo&info) {
                     const auto p = contract::decode(sample);
                     if (!p) return;
-                    const Time now = e.strand.now();
+                    const Time now = info.received;  // The strand may have been busy since.
                     if (p->kind == contract::AgentKind::station) {
                       e.stations.heard(p->name, p->seq, now);
                       namesakes.station(now);
@@ -187,7 +187,7 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                       if (c && refused) refused(c->name, wrong);
                       return;
                     }
-                    const Time now = e.strand.now();
+                    const Time now = info.received;  // The strand may have been busy since.
                     if (c->kind == contract::AgentKind::station)
                       commands([&](CommandInterface& interface) {
                         interface.hear({c->name, c->id, info.sender}, c->protocol, now);
@@ -236,7 +236,7 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                     if (info.sender == e.wire.id() || !take) return;
                     const auto beacon = contract::decode(b);
                     e.malformed += beacon ? 0 : 1;
-                    take(beacon, info.sender);
+                    take(beacon, info.sender, info.received);
                   }),
            e.read(topics::kBulkAck, e.acknowledged),
        })

@@ -40,7 +40,9 @@ class RadioEdge {
                        std::function<void(const Result<GoalReport>&)> done)>
         check_goal{};
     /// Takes what another robot said of itself; nothing: the beacon was malformed.
-    std::function<void(const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from)> beacon{};
+    std::function<void(const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from,
+                       Time received)>
+        beacon{};
     /// Takes what a station has of this robot's pieces.
     std::function<void(const std::string& station, const transfer::Ack& ack, const wire::ParticipantId& from)>
         pieces_acknowledged{};

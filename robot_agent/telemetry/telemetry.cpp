@@ -91,7 +91,7 @@ void Telemetry::report_driver(Time now) {
     const bool was_present = dependencies_.frames.initialised();
     driver.state = was_present ? PartState::failed : PartState::starting;
     heard = now - dependencies_.frames.silence(now, started_);
-    driver.text = was_present ? "no odometry" : "no odometry since the start of the agent";
+    driver.text = was_present ? "no usable odometry" : "no usable odometry since the start of the agent";
   }
   dependencies_.watch.note(driver, heard);
 }

@@ -19,6 +19,7 @@
 #include "nav/planners/falco/shared_library.hpp"
 #include "nav_msgs/msg/Odometry.h"
 #include "robot_agent/agent.hpp"
+#include "sensor_msgs/msg/BatteryState.h"
 #include "sensor_msgs/msg/Imu.h"
 #include "sensor_msgs/msg/PointCloud2.h"
 #include "tests/folders/folders.hpp"
@@ -74,6 +75,8 @@ class AgentBench {
     odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*driver_wire_, wire::topics::kOdom).value();
     points_ = wire::Writer<sensor_msgs::msg::PointCloud2>::make(*driver_wire_, wire::topics::kPoints).value();
     imu_ = wire::Writer<sensor_msgs::msg::Imu>::make(*driver_wire_, wire::topics::kImu).value();
+    battery_ =
+        wire::Writer<sensor_msgs::msg::BatteryState>::make(*driver_wire_, wire::topics::kBattery).value();
     frames_ = wire::Writer<tf2_msgs::msg::TFMessage>::make(*driver_wire_, wire::topics::kTfStatic).value();
     cmd_vel_ = wire::make_reader(*driver_wire_, wire::topics::kCmdVel, *strand_,
                                  [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
@@ -85,6 +88,7 @@ class AgentBench {
     odom_timer_ = strand_->every(20ms, [this] { drive(); });
     points_timer_ = strand_->every(100ms, [this] { scan(); });
     imu_timer_ = strand_->every(10ms, [this] { inertia(); });
+    battery_timer_ = strand_->every(1s, [this] { report_charge(); });
     start_agent();
   }
   ~AgentBench() { stop_agent(); }
@@ -183,8 +187,11 @@ class AgentBench {
   PointCloud obstacles{};  ///< Odometry frame; added to the plain.
   /// Changes each cloud before it is sent; none: it is sent as it is.
   std::function<void(sensor_msgs::msg::PointCloud2&)> spoil{};
+  std::function<void(nav_msgs::msg::Odometry&)> spoil_odometry{};  ///< The same for the odometry.
   /// Specific force that the IMU measures, 100 Hz; none: there is no IMU.
   std::optional<Eigen::Vector3d> force{};
+  std::function<void(sensor_msgs::msg::Imu&)> spoil_imu{};
+  std::optional<float> charge{};  ///< What the driver sends as percentage, 1 Hz; none: nothing.
   void send_frame(const std::string& child, double z) {
     tf2_msgs::msg::TFMessage message;
     message.transforms().resize(1);
@@ -258,6 +265,7 @@ class AgentBench {
     o.pose().pose().orientation().w(std::cos(pose.yaw / 2));
     o.twist().twist().linear().x(command.vx);
     o.twist().twist().angular().z(command.wz);
+    if (spoil_odometry) spoil_odometry(o);
     (void)odom_.write(o);
   }
   void scan() {
@@ -287,7 +295,14 @@ class AgentBench {
     sample.linear_acceleration().x(force->x());
     sample.linear_acceleration().y(force->y());
     sample.linear_acceleration().z(force->z());
+    if (spoil_imu) spoil_imu(sample);
     (void)imu_.write(sample);
+  }
+  void report_charge() {
+    if (!charge) return;
+    sensor_msgs::msg::BatteryState battery;
+    battery.percentage(*charge);
+    (void)battery_.write(battery);
   }
   void stamp(std_msgs::msg::Header& h) {
     const auto ns = strand_->now().time_since_epoch().count();
@@ -306,7 +321,8 @@ class AgentBench {
   wire::Writer<sensor_msgs::msg::Imu> imu_{};
   wire::Writer<tf2_msgs::msg::TFMessage> frames_{};
   std::unique_ptr<wire::RawReader> cmd_vel_{};
-  Timer odom_timer_{}, points_timer_{}, imu_timer_{};
+  wire::Writer<sensor_msgs::msg::BatteryState> battery_{};
+  Timer odom_timer_{}, points_timer_{}, imu_timer_{}, battery_timer_{};
   std::vector<std::unique_ptr<Operator>> operators_{};
   std::unique_ptr<Agent> agent_{};
 };

@@ -108,6 +108,28 @@ const std::vector<BadInput>& cases() {
          b.force = {0, 0, std::nan("")};
        },
        "sensor_refused", Reason::malformed, "no number", false},
+      {"AnImuWithoutStamps",
+       [](AgentBench& b) {
+         b.force = {0, 0, 9.81};
+         b.spoil_imu = [](auto& sample) { sample.header().stamp({}); };
+       },
+       "sensor_refused", Reason::sensor_times, "'imu/data' have no stamp", false},
+      {"OdometryWithoutAnOrientation",
+       [](AgentBench& b) { b.spoil_odometry = [](auto& o) { o.pose().pose().orientation({}); }; },
+       "sensor_refused", Reason::malformed, "its orientation 0 0 0 0 is no quaternion", true},
+      {"OdometryFarAway",
+       [](AgentBench& b) { b.spoil_odometry = [](auto& o) { o.pose().pose().position().x(5e6); }; },
+       "sensor_refused", Reason::malformed, "within 1000 km", true},
+      {"OdometryWithoutStamps",
+       [](AgentBench& b) { b.spoil_odometry = [](auto& o) { o.header().stamp({}); }; }, "not_deskewed",
+       Reason::sensor_times, "odometry on /odom has no stamps", false},
+      {"ALidarOfAnotherClock",
+       [](AgentBench& b) {
+         b.spoil = [](auto& c) { c.header().stamp().sec(c.header().stamp().sec() + 100); };
+       },
+       "not_deskewed", Reason::sensor_times, "100.0 s ahead of the odometry", false},
+      {"AChargeInPercent", [](AgentBench& b) { b.charge = 17.0f; }, "sensor_refused", Reason::out_of_range,
+       "charge on /battery_state is 17, as if it were percent", false},
       {"AnImuThatIsSilent", [](AgentBench&) {}, "sensor_silent", Reason::sensor_silent, "'imu/data'", false},
   };
   return all;
@@ -151,6 +173,9 @@ TEST_P(BadInputTest, IsReportedAndSurvived) {
   }
 
   bench.spoil = {};
+  bench.spoil_odometry = {};
+  bench.spoil_imu = {};
+  bench.charge = {};
   bench.force = {0, 0, 9.81};
   bench.run(2s);
   bench.stream(op1, 0.0, 300ms);

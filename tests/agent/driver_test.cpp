@@ -71,13 +71,13 @@ sensor_msgs::msg::LaserScan laser(std::vector<float> ranges) {
 
 TEST(LaserScan, IsPointsAtTheLidarsHeight) {
   const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-  const auto points = to_sweep(laser({2.0f, 3.0f, 4.0f, inf}), 0.5);
+  const auto points = to_sweep(laser({2.0f, 3.0f, 4.0f, inf}), 0.5, 0.1);
   ASSERT_TRUE(points);
   ASSERT_EQ(points->points.size(), 3u) << "what met nothing is no point";
   EXPECT_TRUE(points->points[0].position.isApprox(Eigen::Vector3f(-2, 0, 0.5), 1e-4f));
   EXPECT_TRUE(points->points[1].position.isApprox(Eigen::Vector3f(0, -3, 0.5), 1e-4f));
   EXPECT_TRUE(points->points[2].position.isApprox(Eigen::Vector3f(4, 0, 0.5), 1e-4f));
-  EXPECT_TRUE(to_sweep(laser({nan, 0.01f, 31.0f, -1.0f}), 0.5)->points.empty())
+  EXPECT_TRUE(to_sweep(laser({nan, 0.01f, 31.0f, -1.0f}), 0.5, 0.1)->points.empty())
       << "none of the scanner's range";
 }
 
@@ -85,11 +85,25 @@ TEST(LaserScan, InvalidAnglesAreRefused) {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), 1e30f, 3.0f}) {
     auto scan = laser({1, 1, 1, 1});
     scan.angle_increment(bad);
-    EXPECT_EQ(to_sweep(scan, 0.5).reason(), Reason::malformed) << bad;
+    EXPECT_EQ(to_sweep(scan, 0.5, 0.1).reason(), Reason::malformed) << bad;
   }
   auto scan = laser({1});
   scan.angle_min(std::numeric_limits<float>::infinity());
-  EXPECT_EQ(to_sweep(scan, 0.5).reason(), Reason::malformed);
+  EXPECT_EQ(to_sweep(scan, 0.5, 0.1).reason(), Reason::malformed);
+}
+
+TEST(LaserScan, RaysThatTakeLongerThanASweepAreRefused) {
+  auto scan = laser({1, 1, 1, 1});
+  scan.time_increment(0.025f);
+  ASSERT_TRUE(to_sweep(scan, 0.5, 0.1));
+  EXPECT_TRUE(to_sweep(scan, 0.5, 0.1)->timed);
+  for (const float bad : {2.5e7f, 0.2f, -0.2f, std::numeric_limits<float>::quiet_NaN()}) {
+    scan.time_increment(bad);
+    EXPECT_EQ(to_sweep(scan, 0.5, 0.1).reason(), Reason::sensor_times) << bad;
+  }
+  scan.time_increment(2.5e7f);
+  EXPECT_THAT(to_sweep(scan, 0.5, 0.1).error().text,
+              testing::HasSubstr("time_increment 2.5e+07 times its 4 rays is no sweep of 0.1 s"));
 }
 
 /// What the two kinds of driver hear.
@@ -147,7 +161,10 @@ class OdometryTest : public testing::Test {
       rivals.push_back(who);
       times.push_back(received);
     };
-    driver = Driver::open({*agent, *strand, generation}, VelocityType::twist, std::move(handlers)).value();
+    handlers.fault = [this](const InputFault& fault) { faults.push_back(fault.cause.text); };
+    driver = Driver::open({*agent, *strand, generation}, VelocityType::twist, std::move(handlers),
+                          std::make_shared<OneSource>())
+                 .value();
     writer = wire::Writer<nav_msgs::msg::Odometry>::make(*body, wire::topics::kOdom).value();
     run(3s);
   }
@@ -177,6 +194,7 @@ class OdometryTest : public testing::Test {
   std::vector<Twist2> asked{};
   std::vector<wire::ParticipantId> rivals{};
   std::vector<Time> times{};
+  std::vector<std::string> faults{};
 };
 
 TEST_F(OdometryTest, ImpossibleOdometryCountsAsSilence) {
@@ -186,6 +204,10 @@ TEST_F(OdometryTest, ImpossibleOdometryCountsAsSilence) {
   for (const double x : {nan, inf, -inf, 1e300, -1e9}) EXPECT_EQ(publish(x, 1.0, 0.5), 0u) << x;
   for (const double w : {nan, inf, 0.0, 1e300}) EXPECT_EQ(publish(1.0, w, 0.5), 0u) << w;
   for (const double v : {nan, inf}) EXPECT_EQ(publish(1.0, 1.0, v), 0u) << v;
+  ASSERT_EQ(faults.size(), 11u) << "each is reported";
+  EXPECT_THAT(faults[0], testing::HasSubstr("its position nan 0 0 is no place within 1000 km"));
+  EXPECT_THAT(faults[7], testing::HasSubstr("its orientation 0 0 0 0 is no quaternion"));
+  EXPECT_THAT(faults[9], testing::HasSubstr("its twist is no number"));
 }
 
 TEST_F(OdometryTest, ARevokedComponentDrivesAndHearsNothing) {
@@ -251,8 +273,9 @@ TEST(DriverRival, IsHeardInTheDriversOwnType) {
   handlers.battery = [](float) {};
   handlers.external = [](const Twist2&, Time) {};
   handlers.rival = [&](const wire::ParticipantId& who, Time) { rivals.push_back(who); };
-  const auto driver =
-      Driver::open({*agent, *strand}, VelocityType::twist_stamped, std::move(handlers)).value();
+  const auto driver = Driver::open({*agent, *strand}, VelocityType::twist_stamped, std::move(handlers),
+                                   std::make_shared<OneSource>())
+                          .value();
   auto rival =
       wire::Writer<geometry_msgs::msg::TwistStamped>::make(*body, wire::topics::kCmdVelStamped).value();
   scheduler.run_until(3s);

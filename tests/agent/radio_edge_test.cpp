@@ -34,6 +34,7 @@ class RadioEdgeTest : public testing::Test {
     dependencies.refused = [this](const std::string& name, const std::string& why) {
       refused.push_back(name + ": " + why);
     };
+    dependencies.beacon = [this](const auto&, const auto&, Time received) { beacons.push_back(received); };
     EXPECT_TRUE(edge->listen(std::move(dependencies)));
     run(3s);  // the endpoints match
     EXPECT_EQ(joystick.matched(), 1U);
@@ -55,6 +56,7 @@ class RadioEdgeTest : public testing::Test {
       wire::Writer<radio::Joystick>::make(*station, wire::topics::kJoystick, "r1").value()};
   CommandBench bench{};
   std::vector<std::string> refused{};
+  std::vector<Time> beacons{};
   PeerTable peers{held};
   Directory directory{peers};
   Namesakes namesakes{radio->id()};
@@ -78,6 +80,27 @@ TEST_F(RadioEdgeTest, AStickThatWaitedForTheCommandStrandIsStale) {
   held.release();
   run(1ms);
   EXPECT_TRUE(bench.requests.sticks.empty()) << "its echo alone, of 400 ms ago, would let it pass";
+}
+
+TEST_F(RadioEdgeTest, TheAgeOfAHeartbeatAndABeaconCountsFromTheirReception) {
+  auto presence = wire::Writer<radio::Presence>::make(*station, wire::topics::kPresence).value();
+  auto team = wire::Writer<radio::TeamBeacon>::make(*station, wire::topics::kTeam).value();
+  run(1s);
+  radio::Presence heartbeat;
+  heartbeat.kind(radio::AGENT_STATION);
+  heartbeat.name("op1");
+  heartbeat.id(bench.station("op1").sender.id);
+  heartbeat.protocol(1);
+  EXPECT_TRUE(presence.write(heartbeat));
+  EXPECT_TRUE(team.write(encode(TeamBeacon{.robot = "r2"})));
+  const Time sent = strand->now();
+  run(2500ms);
+  held.release();
+  run(1ms);
+  EXPECT_LT(bench.interface().authority().heard() - sent, 50ms);
+  EXPECT_GE(bench.interface().authority().heard(), sent);
+  ASSERT_EQ(beacons.size(), 1U);
+  EXPECT_LT(beacons[0] - sent, 50ms);
 }
 
 TEST_F(RadioEdgeTest, ASizeThatNoRobotHasIsRefusedAndReported) {

@@ -227,7 +227,7 @@ TEST(Health, ADriverThatWasNeverPresentHasNotFailed) {
   };
   bench.run(3s);
   EXPECT_EQ(driver().state(), radio::COMPONENT_STARTING);
-  EXPECT_EQ(driver().text(), "no odometry since the start of the agent");
+  EXPECT_EQ(driver().text(), "no usable odometry since the start of the agent");
   bench.driver_alive = true;
   bench.run(1s);
   EXPECT_EQ(driver().state(), radio::COMPONENT_UP);
