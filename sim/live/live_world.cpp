@@ -40,6 +40,11 @@ std::vector<Goal> goals_of(const Scenario& scenario) {
   return out;
 }
 
+/// The domain of the robot with that index.
+std::uint32_t domain_of(const LiveWorldParams& params, std::size_t i) {
+  return params.domain_base + 1 + static_cast<std::uint32_t>(i);
+}
+
 LiveParams live_params() {
   LiveParams params;
   params.compute_threads = 2;
@@ -68,13 +73,20 @@ LiveWorld::~LiveWorld() {
 Result<std::unique_ptr<LiveWorld>> LiveWorld::open(const Scenario& scenario,
                                                    std::shared_ptr<const World> world,
                                                    const LiveWorldParams& params) {
+  std::vector<DomainClaim> claims;
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    auto claim = DomainClaim::take(domain_of(params, i), scenario.robots[i].id);
+    if (!claim) return claim.error();
+    claims.push_back(std::move(*claim));
+  }
   auto simulation = Simulation::create(std::move(world), make_starts(scenario),
                                        make_simulation_params(scenario, params.seed));
   if (!simulation) return simulation.error();
   std::unique_ptr<LiveWorld> out(new LiveWorld(scenario, std::move(*simulation), params));
+  out->claims_ = std::move(claims);
   for (std::size_t i = 0; i < out->simulation_.size(); ++i) {
     wire::FastDdsParams dds;
-    dds.domain = params.domain_base + 1 + static_cast<std::uint32_t>(i);
+    dds.domain = domain_of(params, i);
     dds.name = out->simulation_.id(i) + " driver";
     dds.large_samples = true;
     auto opened = wire::open_fastdds(dds);

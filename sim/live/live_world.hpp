@@ -8,6 +8,7 @@
 #include "core/exec/live_runtime.hpp"
 #include "core/wire/participant.hpp"
 #include "sim/driver/robot_driver.hpp"
+#include "sim/live/domain_claim.hpp"
 #include "sim/rehearsal/expectations.hpp"
 #include "sim/rehearsal/rehearsal.hpp"
 
@@ -24,7 +25,8 @@ struct LiveWorldParams {
 /// would be.
 class LiveWorld {
  public:
-  /// `scenario` outlives it. Errors: as Simulation::create, and wire_failed.
+  /// `scenario` outlives it. Errors: in_use, when another process simulates a robot
+  /// of these domains; as Simulation::create; wire_failed.
   static Result<std::unique_ptr<LiveWorld>> open(const Scenario& scenario, std::shared_ptr<const World> world,
                                                  const LiveWorldParams& params);
   ~LiveWorld();
@@ -47,6 +49,7 @@ class LiveWorld {
   LiveWorldParams params_;
   Simulation simulation_;
   Expectations expectations_;
+  std::vector<DomainClaim> claims_{};
   std::vector<std::unique_ptr<wire::Participant>> wires_{};
   LiveRuntime runtime_;
   std::shared_ptr<Executor> strand_;

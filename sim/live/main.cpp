@@ -25,7 +25,7 @@ constexpr const char* kExamples =
     "Robot k of the scenario is on DDS domain BASE + k: start its agent with robot_agent --robot-domain.\n"
     "Ends by Ctrl-C, SIGTERM or --for. Exit status: 0 every place was reached and nothing was touched, 1 not "
     "so,\n"
-    "2 the scenario cannot be read or the world not be opened.";
+    "2 the scenario cannot be read, the world not be opened, or another simulate serves one of its domains.";
 
 /// Until Ctrl-C, SIGTERM or the time is up; SIGUSR1 begins the script.
 void wait_for_the_end(const sigset_t& signals, double length, LiveWorld& world) {
