@@ -50,7 +50,7 @@ pids=()
 finish() {
   trap - EXIT INT TERM
   for name in "${operators[@]}"; do
-    "$bin/basestation" --name "$name" --domain "$domain" down >/dev/null 2>&1 || true
+    "$bin/basestation" --name "$name" --domain "$domain" down --leave >/dev/null 2>&1 || true
   done
   for pid in "${pids[@]}"; do kill -TERM "$pid" 2>/dev/null || true; done
   for pid in "${pids[@]}"; do wait "$pid" 2>/dev/null || true; done

@@ -52,7 +52,7 @@ export XDG_RUNTIME_DIR="$home" XDG_STATE_HOME="$home"
 pids=()
 finish() {
   trap - EXIT INT TERM
-  for name in $operators; do "$bin/basestation" --name "$name" down > /dev/null 2>&1 || true; done
+  for name in $operators; do "$bin/basestation" --name "$name" down --leave > /dev/null 2>&1 || true; done
   for pid in "${pids[@]}"; do kill -TERM "$pid" 2> /dev/null || true; done
   for pid in "${pids[@]}"; do wait "$pid" 2> /dev/null || true; done
   if [ -n "$keep" ]; then

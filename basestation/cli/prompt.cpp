@@ -56,7 +56,7 @@ class Prompt {
     auto request = words ? command::parse(*words) : Result<Request>(words.error());
     const int code = request ? run(*request, line) : fail(options_, kExitUsage, request.error());
     if (code != kExitDone) code_ = code;
-    return !request || request->verb != verb("down");
+    return !request || request->verb != verb("down") || code != kExitDone;
   }
 
   /// Prints received notices; returns whether something was printed.

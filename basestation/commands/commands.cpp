@@ -8,6 +8,7 @@
 #include "basestation/commands/station_commands.hpp"
 #include "basestation/flow/arrival.hpp"
 #include "basestation/flow/steer.hpp"
+#include "basestation/model/leaving.hpp"
 #include "basestation/model/outcome.hpp"
 #include "basestation/report/text.hpp"
 #include "core/command/words.hpp"
@@ -110,6 +111,11 @@ bool Commands::must_wait(std::uint64_t handle, const Request& request) const {
       }))
     return true;
   if (!known(request) && fresh(params_.discovery_grace)) return true;
+  if (request.verb == verb("down")) {
+    // A robot that accepted a command a moment ago says in its next state what it does now.
+    if (accepted_ && strand_.now() - *accepted_ < params_.settle) return true;
+    return !request.has("--leave") && (fresh(params_.settle) || (fresh(2 * params_.settle) && !complete()));
+  }
   if (request.info->runs != Runs::query && !request.all) return false;
   // Just after the start the first results are incomplete, and an absent robot looks like a late one.
   return fresh(params_.settle) || (fresh(2 * params_.settle) && !complete());
@@ -210,8 +216,14 @@ void Commands::command_robots(std::uint64_t handle, const Request& request, cons
 
 void Commands::command_robot(std::uint64_t handle, const std::string& robot, const Request& request,
                              const std::shared_ptr<Gather>& gather) {
-  const auto ended = [this, gather, index = gather->expect(robot)](Answer answer) {
+  // What it does when it is released shows its state before that.
+  const RobotView* state = fleet_.robot(robot);
+  const std::string then = request.verb == verb("release") && state
+                               ? after_release(described(*state, strand_.now())).text
+                               : std::string();
+  const auto ended = [this, gather, then, index = gather->expect(robot)](Answer answer) {
     answer.command = gather->request().info->name;
+    if (!then.empty() && (answer.accepted || answer.reason == Reason::no_answer)) answer.text = then;
     if (answer.reason == Reason::mode_unknown)
       answer.text += nearest_mode(fleet_.robot(answer.robot), gather->request().word("MODE"));
     if (answer.route) answer.text = route_text(*answer.route);
@@ -297,22 +309,43 @@ void Commands::close_stop_alls() {
 
 void Commands::down(const Request& request, const Done& done) {
   Request release(verb("release"));
-  for (const auto& [robot_name, robot] : fleet_.robots())
-    if (robot.mine) release.robots.push_back(robot_name);
-  const auto gather = std::make_shared<Gather>(release, [this, request, done](const Gather& released) {
-    presence_.go_down();
-    const std::vector<std::string> unheard = sender_.drop_unheard();
-    // A robot that does not answer keeps its holder; the station still closes, and reports this.
-    const Outcome answers = released.outcome(params_.name);
-    Outcome outcome = done_outcome(request, answers.text, {{"results", answers.json["results"]}});
-    outcome.error = answers.error;
-    if (!unheard.empty())
-      outcome.text +=
-          "never acknowledged a stop, which no longer goes out: " + command::joined(unheard, "") + "\n";
-    outcome.text += "station " + params_.name + " is down\n";
-    done(outcome);
-    if (on_down) on_down();
-  });
+  nlohmann::json robots = nlohmann::json::array();
+  std::string lines;
+  bool all_rest = true;
+  for (const auto& [robot_name, robot] : fleet_.robots()) {
+    if (!robot.mine) continue;
+    const AfterRelease after = after_release(described(robot, strand_.now()));
+    release.robots.push_back(robot_name);
+    robots.push_back(
+        {{"robot", robot_name}, {"mode", robot.mode}, {"rests", after.rests}, {"then", after.text}});
+    lines += robot_name + ": " + after.text + "\n";
+    all_rest = all_rest && after.rests;
+  }
+  if (!all_rest && !request.has("--leave")) {
+    const std::string text = "refused: " + std::string(describe(Reason::would_go_on)) + " [" +
+                             std::string(name(Reason::would_go_on)) + "]";
+    note({.command = std::string(request.info->name), .reason = Reason::would_go_on, .text = text});
+    Outcome outcome = refused_outcome(request, Reason::would_go_on, text);
+    outcome.error += lines;
+    outcome.json["robots"] = std::move(robots);
+    return done(outcome);
+  }
+  const auto gather =
+      std::make_shared<Gather>(release, [this, request, done, robots](const Gather& released) {
+        presence_.go_down();
+        const std::vector<std::string> unheard = sender_.drop_unheard();
+        // A robot that does not answer keeps its holder; the station still closes, and reports this.
+        const Outcome answers = released.outcome(params_.name);
+        Outcome outcome =
+            done_outcome(request, answers.text, {{"results", answers.json["results"]}, {"robots", robots}});
+        outcome.error = answers.error;
+        if (!unheard.empty())
+          outcome.text +=
+              "never acknowledged a stop, which no longer goes out: " + command::joined(unheard, "") + "\n";
+        outcome.text += "station " + params_.name + " is down\n";
+        done(outcome);
+        if (on_down) on_down();
+      });
   for (const std::string& robot : release.robots) {
     flows_.end_drives(robot, Reason::cancelled);
     command_robot(0, robot, release, gather);
@@ -355,6 +388,7 @@ void Commands::hear(const radio::Acknowledgement& sample, const wire::SampleInfo
   // Another robot of that name also answers.
   if (!fleet_.speaks_for(ack->robot, info.sender)) return;
   fleet_.learn_authority(ack->robot, ack->holder, ack->epoch);
+  if (ack->accepted()) accepted_ = strand_.now();
   if (ack->seq != 0) return sender_.hear(*ack);
   flows_.stream_refused(ack->robot, ack->reason, ack->text);
 }

@@ -81,6 +81,7 @@ class Commands {
   /// Stops the robots that are heard and were not asked yet.
   void ask_stop(std::shared_ptr<Gather> all);
   void close_stop_alls();
+  /// Releases all robots and ends; refuses while one would go on without a holder, unless `--leave` is given.
   void down(const command::Request& request, const Done& done);
   Gather::Done reported_to(Done done) const;
   void note(const Answer& answer);
@@ -103,6 +104,7 @@ class Commands {
   std::vector<std::shared_ptr<Gather>> stop_alls_{};
   std::uint64_t next_handle_{1};
   std::optional<Answer> last_answer_{};
+  std::optional<Time> accepted_{};  ///< When a robot last accepted a command.
 };
 
 }  // namespace adit::station

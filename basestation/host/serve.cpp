@@ -42,8 +42,11 @@ Result<void> run(const client::StationOptions& options, int ready_fd, const clie
                              {"domain", options.domain},         {"link", options.link},
                              {"interfaces", options.interfaces}, {"peers", options.peers}};
   (*server)->serve((*live)->station(), (*live)->strand(), hello, signals.get());
-  // Releases all robots.
-  (void)(*live)->execute(command::Request(command::verb("down")), std::chrono::seconds(1));
+  // Releases all robots after a signal, when no operator can answer any more: the log says what they do.
+  command::Request down(command::verb("down"));
+  down.values = {{.name = "--leave"}};
+  const Outcome outcome = (*live)->execute(down, std::chrono::seconds(2));
+  if (outcome.exit_code == kExitDone) std::fputs((outcome.text + outcome.error).c_str(), stderr);
   return {};
 }
 

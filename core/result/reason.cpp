@@ -25,6 +25,8 @@ constexpr std::array kRows{
     Row{Reason::nobody_holds, "nobody_holds", "nobody holds the robot; take it first"},
     Row{Reason::unknown_operator, "unknown_operator", "no operator of that name has been heard"},
     Row{Reason::stop_of_another, "stop_of_another", "another station set this stop; use reset --override"},
+    Row{Reason::would_go_on, "would_go_on",
+        "robots would go on without a holder; stop them, or leave them so with: down --leave"},
     Row{Reason::wrong_robot, "wrong_robot", "the command is addressed to another robot"},
     Row{Reason::stopped, "stopped", "a software stop is set; reset it first"},
     Row{Reason::joystick_stale, "joystick_stale", "no fresh joystick sample"},

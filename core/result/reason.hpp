@@ -23,6 +23,7 @@ enum class Reason : std::uint16_t {
   unknown_operator = 109,  ///< The operator named in the command has not been heard.
   stop_of_another = 110,   ///< The stop was set by another station: reset --override clears it.
   wrong_robot = 111,       ///< The command is addressed to another robot.
+  would_go_on = 112,       ///< Robots that the station holds would move on without a holder.
 
   // Conditions of the modes (rules 5 to 7)
   stopped = 201,             ///< A software stop is set.

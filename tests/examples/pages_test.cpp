@@ -98,7 +98,7 @@ class Pages : public testing::Test {
 )");
   }
   ~Pages() override {
-    for (const char* name : {"reader", "op1"}) (void)as(name, {"down"});
+    for (const char* name : {"reader", "op1"}) (void)as(name, {"down", "--leave"});
     end_jobs();
     write("exit\n");
     (void)shell_.wait(kEndLimit);

@@ -48,7 +48,7 @@ class LiveWindow : public RobotWindow {
  protected:
   ~LiveWindow() override {
     close_window();
-    if (!name.empty()) programs.op(name, {"down"});
+    if (!name.empty()) programs.op(name, {"down", "--leave"});
   }
 
   struct Live : live::Programs {

@@ -23,7 +23,8 @@ using testing::HasSubstr;
 class Program : public testing::Test {
  protected:
   ~Program() override {
-    live::run({"basestation", "--name", "op1", "--domain", domain(), "down"}, folder_.environment());
+    live::run({"basestation", "--name", "op1", "--domain", domain(), "down", "--leave"},
+              folder_.environment());
   }
   static std::string domain() { return std::to_string(live::domain()); }
   Finished run(std::vector<std::string> words,
@@ -100,7 +101,7 @@ TEST_F(Program, CommandsGoToTheStationAndTheirOutcomesCome) {
   control.stopAll();
   ASSERT_TRUE(soon([&] { return control.outcome_kind() != "sent"; })) << control.outcome().toStdString();
   // When the station ends, the window says so and can start it again.
-  live::run({"basestation", "--domain", domain(), "down"}, folder_.environment());
+  live::run({"basestation", "--domain", domain(), "down", "--leave"}, folder_.environment());
   ASSERT_TRUE(soon([&] { return control.ended(); }));
   EXPECT_TRUE(control.silent_text().startsWith("NO STATION"));
   control.restartStation();

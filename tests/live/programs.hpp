@@ -14,7 +14,7 @@ namespace adit::live {
 class Programs : public testing::Test {
  protected:
   ~Programs() override {
-    for (const auto& name : used_) cli({"--name", name, "down"});
+    for (const auto& name : used_) cli({"--name", name, "down", "--leave"});
   }
   Process agent(std::vector<std::string> more = {}, const std::string& config = "robots/r1.yaml") {
     std::vector<std::string> words{"robot_agent",

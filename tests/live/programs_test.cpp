@@ -35,7 +35,7 @@ TEST_F(Programs, KilledStationHasItsRobotsBackAtOnce) {
   Seconds shortest = Seconds::max();
   for (int i = 0; i < max_measurements() && shortest >= 2500ms; ++i) {
     if (i > 0) {
-      EXPECT_EQ(op("op1", {"down"}).exit_code, 0);
+      EXPECT_EQ(op("op1", {"down", "--leave"}).exit_code, 0);
     }
     Process first = station("op1");
     ASSERT_TRUE(eventually([&] { return op("op1", {"take", "r1"}).exit_code == 0; })) << first.err();

@@ -34,7 +34,7 @@ using testing::HasSubstr;
 class Cli : public testing::Test {
  protected:
   ~Cli() override {
-    for (const char* name : {"op1", "op2"}) run({"--name", name, "down"});
+    for (const char* name : {"op1", "op2"}) run({"--name", name, "down", "--leave"});
   }
   Finished run(std::vector<std::string> words) {
     words.insert(words.begin(), {"basestation", "--domain", std::to_string(live::domain())});

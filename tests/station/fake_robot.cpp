@@ -112,7 +112,7 @@ void FakeRobot::answer(const radio::Command& command) {
   if (before != answered_.end()) return void(answers_.write(before->second));
   const auto reason = answering ? answering(command) : std::optional(Reason::none);
   if (!reason) return;
-  if (*reason == Reason::none) act(command);
+  if (*reason == Reason::none && (!acting || acting(command))) act(command);
   radio::Acknowledgement sample;
   sample.robot(name_);
   sample.station(command.station());

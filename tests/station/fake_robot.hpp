@@ -46,6 +46,8 @@ class FakeRobot {
   std::uint32_t epoch{1};
   radio::BehaviourState behaviour{};
   Answering answering{};
+  /// Whether its state changes with a command that it accepts; a test sets it where that comes later.
+  std::function<bool(const radio::Command&)> acting{};
   std::optional<radio::PlannedRoute> route{};  ///< Its answer to `plan`.
 
   /// Authority and behaviour as they are now.
