@@ -151,6 +151,8 @@ class Agent::CommandComponent : public Component {
   void add_waiting_scan();
   /// Keeps the robot in hold while it gives way to another one of its name.
   void watch_namesakes(Time at);
+  /// Has a keyframe made of a scan when the robot moved far enough since the last one.
+  void make_keyframe(const std::shared_ptr<const Scan>& scan);
   /// Offers a scan to the map, in the odometry frame.
   void add_to_map(const std::shared_ptr<const Scan>& scan);
   /// Sends findings and maps to the stations, or its map to carriers, as the link allows.

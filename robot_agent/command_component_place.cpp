@@ -10,6 +10,7 @@ namespace adit::agent {
 namespace {
 
 constexpr Duration kRecognition = 150ms;  // Duration in rehearsal.
+constexpr Duration kKeyframe = 5ms;       // The same.
 constexpr Duration kLookAhead = 1s;       // Between two updates of what stations should get first.
 
 }  // namespace
@@ -131,9 +132,20 @@ void Agent::CommandComponent::add_waiting_scan() {
   navigation_.add_scan(std::move(scan), waiting.received, now(), team(now()));
 }
 
+void Agent::CommandComponent::make_keyframe(const std::shared_ptr<const Scan>& scan) {
+  if (!context_.keyframes->wants(scan->body.position, frames_.odom_epoch())) return;
+  compute(
+      {.name = "make keyframe", .modelled = kKeyframe, .latest_only = true},
+      [scan, epoch = frames_.odom_epoch()] {
+        return perception::make_keyframe(scan->points, scan->body, epoch);
+      },
+      [this](Result<perception::Keyframe> keyframe) {
+        if (keyframe) context_.keyframes->add(std::move(*keyframe));
+      });
+}
+
 void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan) {
-  if (localisation(now()) == Localisation::ok)
-    context_.keyframes->offer(scan->points, scan->body, frames_.odom_epoch());
+  if (localisation(now()) == Localisation::ok) make_keyframe(scan);
   if (!context_.map) return;
   auto job = context_.map->job(scan, team(now()), frames_.odom_epoch(), now());
   if (!job) return;

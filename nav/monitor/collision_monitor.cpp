@@ -2,6 +2,7 @@
 #include "nav/monitor/collision_monitor.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace adit::nav {
 namespace {
@@ -29,8 +30,6 @@ double reach_of(const Platform& p, const CollisionMonitorParams& m) {
          p.max_speed * p.max_speed / (2 * m.braking_share * p.max_acceleration) + 0.1;
 }
 
-constexpr double kUpright = 0.9;  ///< Fraction of the tilt limit below which a tilted body may drive again.
-
 }  // namespace
 
 CollisionMonitor::CollisionMonitor(const Platform& platform, const CollisionMonitorParams& params)
@@ -38,18 +37,14 @@ CollisionMonitor::CollisionMonitor(const Platform& platform, const CollisionMoni
       params_(params),
       body_(Footprint(platform).grown(params.margin, params.margin)),
       wide_(Footprint(platform).grown(params.mover_margin, params.mover_margin)),
-      near_(platform, reach_of(platform, params), params.points),
-      tracker_(platform, params.tracker),
-      tilt_(Traversability::of(platform).tilt) {}
+      seen_(std::make_shared<const DetectedObstacles>()) {}
 
-void CollisionMonitor::look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
-  tracker_.look(points, body, stamp_s);
-  near_.take(points, body, stamp_s, tracker_.newest());
-  stamp_s_ = stamp_s;
-  const Eigen::Vector3d up = body.orientation.conjugate() * Eigen::Vector3d::UnitZ();
-  const double roll = std::fabs(std::atan2(up.y(), up.z()));
-  const double pitch = std::fabs(std::asin(std::clamp(up.x(), -1.0, 1.0)));
-  tilted_ = std::max(roll, pitch) > tilt_ * (tilted_ ? kUpright : 1.0);
+ObstacleDetector CollisionMonitor::make_detector() const {
+  return {platform_, reach_of(platform_, params_), params_.points, params_.tracker};
+}
+
+void CollisionMonitor::see(std::shared_ptr<const DetectedObstacles> seen) {
+  if (seen) seen_ = std::move(seen);
 }
 
 void CollisionMonitor::set_border(std::span<const Eigen::Vector2f> places) {
@@ -58,12 +53,7 @@ void CollisionMonitor::set_border(std::span<const Eigen::Vector2f> places) {
     border_.push_back({.x = place.x(), .y = place.y()});
 }
 
-void CollisionMonitor::clear() {
-  tracker_.clear();
-  near_.clear();
-  tilted_ = false;
-  stamp_s_ = -std::numeric_limits<double>::infinity();
-}
+void CollisionMonitor::clear() { seen_ = std::make_shared<const DetectedObstacles>(); }
 
 Twist2 CollisionMonitor::limited(const Twist2& wanted) const {
   const double fastest = rim_speed(wanted);
@@ -94,7 +84,7 @@ double CollisionMonitor::speed_scale(const Twist2& wanted, const Pose2& odom, do
       std::max(speed_of(wanted) / (params_.braking_share * platform_.max_acceleration),
                std::fabs(wanted.wz) / (params_.braking_share * platform_.max_turn_acceleration));
   const double horizon = params_.reaction + brake / 2;
-  double free = free_time(near_.places(), wanted, odom, horizon);
+  double free = free_time(seen_->places, wanted, odom, horizon);
   if (!border_.empty()) free = std::min(free, free_time(border_, wanted, odom, horizon));
   const double k = speed_scale_before_movers(wanted, odom, now_s, brake);
   if (free >= horizon) return k;
@@ -108,7 +98,7 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
   if (wanted.zero()) return {wanted, Cause::none};
   if (!fresh(now_s)) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::stale};
   // An operator may have to drive it down manually.
-  if (tilted_) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::tilted};
+  if (seen_->tilted) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::tilted};
   const double k = speed_scale(wanted, odom, now_s);
   if (k >= 1) return {wanted, Cause::none};
   const bool is_stopped = k * rim_speed(wanted) < kCreep;
@@ -193,10 +183,10 @@ double CollisionMonitor::speed_scale_before_movers(const Twist2& wanted, const P
   std::size_t count = 0;
   const auto c = static_cast<float>(std::cos(odom.yaw)), s = static_cast<float>(std::sin(odom.yaw));
   const auto x0 = static_cast<float>(odom.x), y0 = static_cast<float>(odom.y);
-  const auto age = static_cast<float>(now_s - tracker_.stamp_s());
+  const auto age = static_cast<float>(now_s - seen_->stamp_s);
   const double longest = params_.reaction + brake;
   const auto own_way = static_cast<float>(wide_.radius() + speed_of(wanted) * longest);
-  for (const Mover& mover : tracker_.movers()) {
+  for (const Mover& mover : seen_->movers) {
     if (!mover.moves) continue;  // The scan shows it as a static obstacle.
     const Eigen::Vector2f& v = mover.velocity;
     const float far = own_way + v.norm() * static_cast<float>(longest);

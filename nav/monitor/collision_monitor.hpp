@@ -2,9 +2,9 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <memory>
 
-#include "nav/monitor/near_points.hpp"
-#include "nav/tracking/tracker.hpp"
+#include "nav/monitor/obstacle_detector.hpp"
 
 namespace adit::nav {
 
@@ -31,14 +31,16 @@ struct Driven {
 };
 
 /// The last check of every velocity command, based only on the newest scan and the odometry: it is
-/// independent of map, planner and controller. It sweeps the footprint along the arc of the commanded
-/// velocity and scales it so that the robot can brake before the body, with a margin, touches an obstacle:
-/// far away the full velocity passes, nearer less (the slow zone), at the margin none (the stop zone). Both
-/// zones grow with the speed and bend with the arc. Obstacles that are already inside the margin may not get
-/// deeper: a robot in contact can leave, and obstacles behind it do not matter to a robot that drives ahead.
+/// independent of map, planner and controller. An ObstacleDetector, which may run on another thread, works
+/// out each scan; a check takes time in proportion to the obstacles near the body. The monitor sweeps the
+/// footprint along the arc of the commanded velocity and scales it so that the robot can brake before the
+/// body, with a margin, touches an obstacle: far away the full velocity passes, nearer less (the slow zone),
+/// at the margin none (the stop zone). Both zones grow with the speed and bend with the arc. Obstacles that
+/// are already inside the margin may not get deeper: a robot in contact can leave, and obstacles behind it do
+/// not matter to a robot that drives ahead.
 ///
-/// Movers, found by its own tracker, are assumed to keep their velocity: the robot brakes so that it is
-/// stationary when they meet, and may always drive away from a mover or where it does not come.
+/// Movers, found by the detector's own tracker, are assumed to keep their velocity: the robot brakes so that
+/// it is stationary when they meet, and may always drive away from a mover or where it does not come.
 ///
 /// After Nav2's collision monitor, without its fixed polygons: these stop a robot because of obstacles that
 /// it is driving away from, and hold it there (ros-navigation/navigation2, issues 3313 and 3748).
@@ -60,9 +62,10 @@ class CollisionMonitor {
 
   explicit CollisionMonitor(const Platform& platform, const CollisionMonitorParams& params = {});
 
-  /// Takes the newest scan: points in base_link, m; pose of the body in the odometry frame; time of arrival,
-  /// s.
-  void look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  /// Makes a detector of the obstacles that this monitor needs.
+  ObstacleDetector make_detector() const;
+  /// Takes what the newest scan shows; null is ignored.
+  void see(std::shared_ptr<const DetectedObstacles> seen);
   /// Sets further places, odometry frame, m, that the body must not touch, until the next call. They bind the
   /// check of each velocity. At most NearPoints::kMax count.
   void set_border(std::span<const Eigen::Vector2f> places);
@@ -76,9 +79,9 @@ class CollisionMonitor {
   /// limit; else zero. For example, a robot beside a wall that cannot swing its rear drives straight ahead
   /// first.
   Twist2 instead_of(const Twist2& stopped, const Pose2& odom, double now_s) const;
-  /// Forgets all scans, for example after a jump of the odometry: scans are stale until the next one.
+  /// Forgets the scan, for example after a jump of the odometry: scans are stale until the next one.
   void clear();
-  bool fresh(double now_s) const { return now_s - stamp_s_ <= params_.stale; }
+  bool fresh(double now_s) const { return now_s - seen_->stamp_s <= params_.stale; }
 
  private:
   /// Time for which `velocity` can be driven until the body touches an obstacle, s, at most `horizon`.
@@ -95,12 +98,8 @@ class CollisionMonitor {
   Platform platform_;
   CollisionMonitorParams params_;
   Footprint body_, wide_;  ///< With the margins towards static obstacles and movers.
-  NearPoints near_;
   std::vector<NearPoints::Place> border_{};
-  Tracker tracker_;
-  double tilt_;         ///< Roll or pitch at which the body may tip over, rad.
-  bool tilted_{false};  ///< At the newest scan.
-  double stamp_s_{-std::numeric_limits<double>::infinity()};
+  std::shared_ptr<const DetectedObstacles> seen_;  ///< Never null.
 };
 
 }  // namespace adit::nav

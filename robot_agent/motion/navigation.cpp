@@ -18,6 +18,12 @@ constexpr double kGoalMoved = 0.05;       // Shift of the goal by a correction o
 
 }  // namespace
 
+/// The detector, which the jobs of one lane use.
+struct Navigation::Detection {
+  nav::ObstacleDetector detector;
+  std::uint32_t epoch{};  ///< Of the scans that it remembers.
+};
+
 Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const Frames& frames,
                        const PlanService& planner, const RouteServices* router, Outputs outputs)
     : Component("navigation", strand, std::move(log)),
@@ -28,6 +34,7 @@ Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const
       outputs_(std::move(outputs)),
       controller_(nav::make_controller(params_.platform.controller, params_.platform).value()),
       monitor_(params_.platform),
+      detection_(new Detection{monitor_.make_detector()}),
       fence_(params_.platform) {}
 
 void Navigation::accept(MuxKey, const Motion& motion, Time now) {
@@ -61,6 +68,7 @@ void Navigation::clear() {
   step_.reset();
   held_.clear();
   monitor_.clear();
+  ++scan_epoch_;
   waiting_.reset();
   scanned_.reset();
   mapped_.reset();
@@ -207,12 +215,36 @@ Twist2 Navigation::limited(const Twist2& wanted) const {
 
 void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now, std::vector<TeamRobot> team) {
   scanned_ = received;
-  monitor_.look(scan->points, scan->body, seconds(now.time_since_epoch()));
+  detect(scan, now);
   if (planning_)
     waiting_ = scan;
   else
     plan(scan, now);
   ask_route(scan, now, std::move(team));
+}
+
+void Navigation::detect(std::shared_ptr<const Scan> scan, Time now) {
+  using Detected = std::shared_ptr<const nav::DetectedObstacles>;
+  compute(
+      {.name = "obstacles",
+       .modelled = params_.detection,
+       .priority = JobPriority::high,
+       .lane = "obstacles",
+       .latest_only = true},
+      [scan = std::move(scan), detection = detection_, epoch = scan_epoch_,
+       stamp = seconds(now.time_since_epoch())]() -> Detected {
+        if (std::exchange(detection->epoch, epoch) != epoch) detection->detector.clear();
+        return std::make_shared<const nav::DetectedObstacles>(
+            detection->detector.look(scan->points, scan->body, stamp));
+      },
+      [this, epoch = scan_epoch_](const Result<Detected>& detected) {
+        if (detected) {
+          if (epoch == scan_epoch_) monitor_.see(*detected);
+        } else if (detected.reason() != Reason::cancelled && detected.reason() != Reason::queue_full) {
+          // Work that hangs still uses the one before.
+          detection_.reset(new Detection{monitor_.make_detector(), scan_epoch_});
+        }
+      });
 }
 
 const nav::RouteStep* Navigation::followed_route(Time now) const {
@@ -293,28 +325,28 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
 
 void Navigation::planned(const PlanJob& job, const Result<std::shared_ptr<const PlanAnswer>>& answer) {
   planning_ = false;
-  if (answer && job.odom_epoch == frames_.odom_epoch()) take(job, **answer);
+  if (answer && job.odom_epoch == frames_.odom_epoch()) take(job, *answer);
   if (waiting_) plan(std::exchange(waiting_, nullptr), now());
 }
 
-void Navigation::take(const PlanJob& job, const PlanAnswer& answer) {
-  obstacles_ = std::make_shared<const std::vector<Eigen::Vector2f>>(answer.obstacles);
+void Navigation::take(const PlanJob& job, const std::shared_ptr<const PlanAnswer>& answer) {
+  obstacles_ = {answer, &answer->obstacles};
   const bool for_goal = job.target.kind == nav::Target::Kind::goal && std::holds_alternative<GoTo>(motion_);
   const bool for_stick =
       job.target.kind == nav::Target::Kind::direction && std::holds_alternative<Guidance>(motion_);
   if ((for_goal && job.generation == goal_generation_) || for_stick) {
-    controller_->set_plan(answer.plan);
+    controller_->set_plan(answer->plan);
     has_plan_ = true;
     plan_made_ = job.made;
     const bool held = held_.held(seconds(now().time_since_epoch()), seconds(params_.held_after));
     if (for_goal) {
-      blocked_ = answer.plan.blocked || held;
+      blocked_ = answer->plan.blocked || held;
       const auto* route = step_on(now());
-      outputs_.progress({.arrived = answer.plan.arrived && job.last && is_goal(job.goal) && at_height(),
+      outputs_.progress({.arrived = answer->plan.arrived && job.last && is_goal(job.goal) && at_height(),
                          .blocked = blocked_,
                          .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
                          .stuck = route && route->stuck,
-                         .in_collision = answer.plan.side});
+                         .in_collision = answer->plan.side});
     }
   }
 }

@@ -29,6 +29,7 @@ struct NavigationParams {
   Duration passed_age{500ms};   ///< A robot heads for the place before its goal, see GoTo, for so long.
   Duration held_after{1500ms};  ///< A robot that its collision monitor stops for this long is blocked.
   Duration warned_for{2s};      ///< A warning is repeated if its cause was absent for longer.
+  Duration detection{0};        ///< Duration of the detection of a scan's obstacles in rehearsal.
 };
 
 /// Why the operator of a manual mode is warned.
@@ -41,7 +42,8 @@ enum class Warning { obstacle_near, lidar_silent, tilted, outside_area };
 /// which also receives every scan, gives the steps of the route to a goal; the robot waits while there
 /// is none. Where the platform has no router (`router` null) it heads for the goal directly. The collision
 /// monitor limits each velocity: in autonomous modes and smart joystick it stops the robot, in manual mode it
-/// slows the robot down and the operator is warned.
+/// slows the robot down and the operator is warned. The obstacles of a scan are detected by `compute`, one
+/// scan at a time, and arrive as a value: this strand does no work in proportion to the points.
 class Navigation : public Component, public NavigationInput {
  public:
   struct Outputs {
@@ -106,9 +108,11 @@ class Navigation : public Component, public NavigationInput {
   void send(const Twist2& velocity);
   void pass_on(const Velocity& wanted);
   nav::CollisionMonitor::Verdict guarded(const Twist2& wanted, nav::CollisionMonitor::Policy policy) const;
+  /// Has the obstacles of a scan detected for the collision monitor.
+  void detect(std::shared_ptr<const Scan> scan, Time now);
   void plan(std::shared_ptr<Scan> scan, Time now);
   void planned(const PlanJob& job, const Result<std::shared_ptr<const PlanAnswer>>& answer);
-  void take(const PlanJob& job, const PlanAnswer& answer);
+  void take(const PlanJob& job, const std::shared_ptr<const PlanAnswer>& answer);
 
   NavigationParams params_;
   const Frames& frames_;
@@ -117,7 +121,10 @@ class Navigation : public Component, public NavigationInput {
   Outputs outputs_;
   std::unique_ptr<nav::Controller> controller_;
   nav::CollisionMonitor monitor_;
-  nav::AreaSet areas_{};  // Map frame.
+  struct Detection;
+  std::shared_ptr<Detection> detection_;  // Used by one job at a time.
+  std::uint32_t scan_epoch_{};            // Rises when the scans before are discarded.
+  nav::AreaSet areas_{};                  // Map frame.
   double place_sigma_{};
   Fence fence_;
 

@@ -46,12 +46,14 @@ void KeyframeStore::load() {
   generation_ = newest;
 }
 
-void KeyframeStore::offer(std::span<const Eigen::Vector3f> points, const Pose3& T_odom_base,
-                          std::uint32_t odom_epoch) {
-  const Eigen::Vector3d& here = T_odom_base.position;
-  if (last_ && last_epoch_ == odom_epoch && (here - *last_).norm() < kSpacing) return;
-  perception::Keyframe keyframe = perception::make_keyframe(points, T_odom_base, odom_epoch);
-  if (keyframe.points.empty()) return;
+bool KeyframeStore::wants(const Eigen::Vector3d& position, std::uint32_t odom_epoch) const {
+  return !last_ || last_epoch_ != odom_epoch || (position - *last_).norm() >= kSpacing;
+}
+
+void KeyframeStore::add(perception::Keyframe keyframe) {
+  const Eigen::Vector3d here = keyframe.T_odom_base.position;
+  const std::uint32_t odom_epoch = keyframe.odom_epoch;
+  if (keyframe.points.empty() || !wants(here, odom_epoch)) return;
   last_ = here;
   last_epoch_ = odom_epoch;
   // A robot that comes back replaces what it saw there.

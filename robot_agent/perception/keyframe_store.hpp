@@ -2,7 +2,6 @@
 #pragma once
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/exec/executor.hpp"
@@ -26,8 +25,10 @@ class KeyframeStore {
   /// Reads the files. Those that are damaged are removed and counted.
   void load();
   std::size_t damaged() const { return damaged_; }
-  /// Keeps the scan when the robot moved by kSpacing since the last keyframe.
-  void offer(std::span<const Eigen::Vector3f> points, const Pose3& T_odom_base, std::uint32_t odom_epoch);
+  /// Whether the robot moved by kSpacing since the last keyframe, so that one is to be made here.
+  bool wants(const Eigen::Vector3d& position, std::uint32_t odom_epoch) const;
+  /// Keeps a keyframe, unless it is empty.
+  void add(perception::Keyframe keyframe);
   /// The keyframes of an odometry frame.
   std::vector<perception::Keyframe> of(std::uint32_t odom_epoch) const;
 

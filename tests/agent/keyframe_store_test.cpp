@@ -19,7 +19,9 @@ class KeyframeStoreTest : public testing::Test {
   static void drive(KeyframeStore& frames, double from, double to, std::uint32_t epoch = 0) {
     PointCloud points;
     for (float y = -5; y < 5; y += 0.1f) points.emplace_back(4.0f, y, 1.0f);
-    for (double x = from; x <= to; x += 0.25) frames.offer(points, Pose3::level({x, 0, 0}, 0), epoch);
+    for (double x = from; x <= to; x += 0.25)
+      if (frames.wants({x, 0, 0}, epoch))
+        frames.add(perception::make_keyframe(points, Pose3::level({x, 0, 0}, 0), epoch));
   }
 
   VirtualScheduler scheduler{1};

@@ -246,6 +246,72 @@ TEST_F(NavigationTest, APlanOfTheOldFrameIsNotFollowed) {
   EXPECT_TRUE(navigation.goal_free(frames.T_map_base() * Eigen::Vector2d(2, 0)));
 }
 
+class NavigationDetects : public NavigationTest {
+ protected:
+  NavigationDetects() {
+    EXPECT_TRUE(slow.start());
+    slow_mux.enable("program", strand->now());
+    run(100ms);
+    slow_mux.step(strand->now());
+  }
+  ~NavigationDetects() override { slow.stop(); }
+  void scan(float x) {
+    auto points = std::make_shared<Scan>();
+    for (float y = -0.5f; y <= 0.5f; y += 0.03f)
+      for (float z = 0.1f; z < 0.8f; z += 0.1f) points->points.emplace_back(x, y, z);
+    slow.add_scan(points, strand->now(), strand->now());
+  }
+  /// The velocity that passes now.
+  double speed() {
+    writer.write(Velocity{.twist = {0.3, 0, 0}, .by_program = true}, strand->now());
+    slow.step(strand->now());
+    return passed.vx;
+  }
+
+  Twist2 passed{};
+  Navigation slow{NavigationParams{.detection = 30ms},
+                  *strand,
+                  {},
+                  frames,
+                  plans,
+                  nullptr,
+                  {[this](const Twist2& v) { passed = v; }, [](const Progress&) {}, {}}};
+  Mux slow_mux{slow};
+  Mux::Output writer{slow_mux.connect("program", 10s)};
+};
+
+TEST_F(NavigationDetects, TheObstaclesOfAScanCountWhenTheyAreDetectedAndAgeFromItsReception) {
+  odometry({});
+  scan(5.0f);
+  EXPECT_EQ(speed(), 0.0) << "nothing is worked out within the call";
+  run(40ms);
+  EXPECT_GT(speed(), 0.2);
+  run(450ms);
+  EXPECT_GT(speed(), 0.2);
+  run(20ms);  // So 0.51 s after its reception.
+  EXPECT_EQ(speed(), 0.0);
+}
+
+TEST_F(NavigationDetects, WhileOneScanIsLookedAtTheNewestOneWaits) {
+  odometry({});
+  scan(5.0f);
+  scan(0.1f);  // Replaced, as the next one is there before it begins.
+  scan(4.0f);
+  run(70ms);
+  EXPECT_GT(speed(), 0.2);
+}
+
+TEST_F(NavigationDetects, AScanOfTheOldFrameThatIsLookedAtDoesNotCount) {
+  odometry({});
+  scan(5.0f);
+  slow.clear();
+  run(40ms);
+  EXPECT_EQ(speed(), 0.0) << "stale until the next scan";
+  scan(5.0f);
+  run(40ms);
+  EXPECT_GT(speed(), 0.2);
+}
+
 TEST_F(NavigationTest, ReportsABlockedRouteToTheRouter) {
   for (int i = 0; i < 25; ++i) cycle(planned, actual);
   ASSERT_TRUE(progress.blocked);

@@ -45,11 +45,13 @@ TEST(Allocations, NoneInACycle) {
     const auto planner = make_planner(platform).value();
     const auto controller = make_controller(platform.controller, platform).value();
     CollisionMonitor monitor(platform);
+    ObstacleDetector detector = monitor.make_detector();
     const auto cycle = [&](double time) {
       const Plan plan = planner->plan(Target::to({6, 0}), {}, cells, time);
       controller->set_plan(plan);
       air.add_scan(scan, {}, time);
-      monitor.look(scan, {}, time);
+      // Shares what the detector owns.
+      monitor.see({std::shared_ptr<const DetectedObstacles>{}, &detector.look(scan, {}, time)});
       return monitor
           .check(controller->follow({}, 0.05), {}, time, CollisionMonitor::Policy::stop, {{0.5, 0, 0.3}})
           .velocity;

@@ -9,8 +9,8 @@
 #include "nav/explore/route_ground.hpp"
 #include "nav/goals/goal_check.hpp"
 #include "nav/local_navigation.hpp"
-#include "nav/monitor/collision_monitor.hpp"
 #include "tests/nav/route_world.hpp"
+#include "tests/nav/scanned_monitor.hpp"
 
 namespace adit::nav::test {
 namespace {
@@ -304,7 +304,7 @@ TEST(Areas, GoalsOutsideAreForbidden) {
 
 TEST(Areas, TheMonitorStopsAtTheirBorder) {
   const Platform platform = wheeled();
-  CollisionMonitor monitor(platform);
+  ScannedMonitor monitor(platform);
   const AreaSet areas = set_of({area("beyond", AreaKind::keep_out, {{2, -5}, {9, 5}})});
   std::vector<Eigen::Vector2f> points;
   sample_border(areas, {0, 0, 0}, 5.0, points);

@@ -4,9 +4,9 @@
 
 #include "nav/control/controller.hpp"
 #include "nav/local_navigation.hpp"
-#include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
 #include "tests/nav/box_world.hpp"
+#include "tests/nav/scanned_monitor.hpp"
 
 namespace adit::nav::test {
 
@@ -23,7 +23,7 @@ struct ClosedLoop {
   LocalNavigation local_navigation{platform};
   std::unique_ptr<Controller> controller;
   Controller& follower;
-  CollisionMonitor monitor;
+  ScannedMonitor monitor;
 
   Plan last{};
   double time{0};

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tests/folders/folders.hpp"
 #include "tests/nav/box_world.hpp"
+#include "tests/nav/scanned_monitor.hpp"
 
 namespace adit::nav::test {
 namespace {
@@ -18,7 +18,7 @@ struct Seen {
   BoxWorld world{};
   Platform platform{wheeled()};
   Pose2 pose{};
-  CollisionMonitor monitor{platform};
+  ScannedMonitor monitor{platform};
   std::mt19937 random{3};
   double noise{0.0};
   int columns{720};  ///< Of a scan; fewer make a test with many scans faster
@@ -232,7 +232,7 @@ TEST(CollisionMonitor, ARampIsNoWallAndACeilingNoObstacle) {
       ramp.emplace_back(x, y, 0.3f * (x - 0.4f));
       ramp.emplace_back(x, y, 1.2f);
     }
-  CollisionMonitor monitor(wheeled());
+  ScannedMonitor monitor(wheeled());
   monitor.look(ramp, {}, 0);
   EXPECT_EQ(monitor.check({2, 0, 0}, {}, 0, Policy::stop).cause, Cause::none);
   for (float z = 0.0f; z < 0.5f; z += 0.05f) ramp.emplace_back(1.2f, 0.0f, 0.24f + z);  // a post on it
@@ -254,7 +254,7 @@ TEST(CollisionMonitor, PassesAGapThatIsTenCentimetresWider) {
 struct Meeting {
   BoxWorld hall{{{-9, 9, 6, 6.2}, {-9, 9, -6.2, -6}, {9, 9.2, -6, 6}, {-9.2, -9, -6, 6}}};
   Platform platform{wheeled()};
-  CollisionMonitor monitor{platform};
+  ScannedMonitor monitor{platform};
   std::mt19937 random{3};
   Pose2 pose{};
   Eigen::Vector2d person{0, 0}, walks{0, 0};
@@ -309,7 +309,7 @@ TEST(CollisionMonitor, WithoutItsTrackerItWouldStillMove) {
   Meeting m;
   CollisionMonitorParams blind;
   blind.tracker.slowest = 100;
-  m.monitor = CollisionMonitor(m.platform, blind);
+  m.monitor = ScannedMonitor(m.platform, blind);
   m.person = {7.5, 0.1};
   m.pose.x = -2;
   m.touch({2, 0, 0}, 0.6);
@@ -427,7 +427,7 @@ TEST(CollisionMonitor, AVelocityThatIsNoneIsNotDriven) {
 TEST(CollisionMonitor, ForgetsNearPlacesThatRaysPass) {
   // Somebody who stood at the nose, nearer than the lidar sees, and left.
   Platform p = wheeled();
-  CollisionMonitor monitor(p);
+  ScannedMonitor monitor(p);
   std::mt19937 random{1};
   BoxWorld world{{{3, 3.2, -3, 3}, {0.33, 0.6, -0.2, 0.2}}};
   const auto look = [&](double time) {
@@ -443,7 +443,7 @@ TEST(CollisionMonitor, ForgetsNearPlacesThatRaysPass) {
 
 TEST(CollisionMonitor, GarbageIsNoObstacleAndHarmsNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-  CollisionMonitor monitor(wheeled());
+  ScannedMonitor monitor(wheeled());
   monitor.look(
       std::vector<Eigen::Vector3f>{{nan, 0, 0.3f}, {0.6f, nan, 0.3f}, {0.6f, 0, nan}, {inf, inf, inf}}, {},
       0);

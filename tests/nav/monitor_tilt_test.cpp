@@ -6,9 +6,9 @@
 #include <optional>
 #include <random>
 
-#include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/near_points.hpp"
 #include "tests/nav/box_world.hpp"
+#include "tests/nav/scanned_monitor.hpp"
 
 namespace adit::nav::test {
 namespace {
@@ -165,7 +165,7 @@ TEST(MonitorTilt, ABodyThatMayTipOverStands) {
   std::mt19937 random(5);
   const Platform platform = wheeled();
   const double limit = Traversability::of(platform).tilt;
-  CollisionMonitor monitor(platform);
+  ScannedMonitor monitor(platform);
   const auto lean = [&](double roll, double time) {
     Pose3 body{};
     body.orientation = Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());

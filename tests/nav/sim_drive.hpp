@@ -6,10 +6,10 @@
 
 #include "nav/control/controller.hpp"
 #include "nav/local_navigation.hpp"
-#include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
 #include "sim/world/simulation.hpp"
 #include "tests/nav/box_world.hpp"
+#include "tests/nav/scanned_monitor.hpp"
 
 namespace adit::nav::test {
 
@@ -20,7 +20,7 @@ class SimDrive {
   struct Robot {
     LocalNavigation local_navigation;
     std::unique_ptr<Controller> controller;
-    CollisionMonitor monitor;
+    ScannedMonitor monitor;
     Pose2 start{};
     std::optional<Eigen::Vector2d> goal{};  ///< World frame, m.
     bool arrived{false};
@@ -36,7 +36,7 @@ class SimDrive {
       : simulation(sim::Simulation::create(std::move(world), starts, params).value()) {
     for (const sim::RobotStart& start : starts)
       robots.push_back({LocalNavigation(start.platform), make_controller("ilqr", start.platform).value(),
-                        CollisionMonitor(start.platform), start.pose});
+                        ScannedMonitor(start.platform), start.pose});
   }
 
   void step() {
