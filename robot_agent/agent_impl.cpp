@@ -198,6 +198,11 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (params.carry_maps) e.carrier = std::make_unique<Carrier>(Random(params.seed).fork(kCarrySalt).next());
   e.content = std::make_unique<ContentSender>(Random(params.seed).fork(kContentSalt).next(), *e.findings,
                                               e.map.get(), e.carrier.get());
+  const Task send_pieces = [&e] {
+    if (e.command_component) e.command_component->send_pieces();
+  };
+  if (e.map) e.map->encode_on(strand, send_pieces);
+  if (e.carrier) e.carrier->compute_on(strand, send_pieces);
   if (routes_it) e.router = std::make_unique<RouteServices>();
   auto opened = AgentSupervisor::open({params.name, params.supervision, Log(params.log, params.name),
                                        params.end, params.alive, params.velocity},

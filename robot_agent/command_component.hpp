@@ -107,6 +107,8 @@ class Agent::CommandComponent : public Component {
   std::string at_console(const std::string& line);
   /// Stores the state that must survive a restart.
   void keep();
+  /// Sends the pieces of findings and maps that are ready, as the link allows.
+  void send_pieces();
 
  protected:
   Result<void> on_start() override;

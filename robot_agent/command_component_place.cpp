@@ -165,12 +165,18 @@ void Agent::CommandComponent::send_content() {
   }
   if (context_.content->needs_carriers(now()) && context_.peers.carrier_present())
     context_.radio->reach_carriers();
-  const wire::SenderState link = context_.wire->sender();
-  for (const transfer::Piece& piece : context_.content->due(now(), link))
-    context_.radio->send(piece, context_.content->session());
-  if (!context_.carrier) return;
-  if (const auto receipts = context_.carrier->due(now(), link.link != nullptr ? link.link->bandwidth : 0.0))
-    context_.radio->send(context_.carrier->id(), *receipts);
+  send_pieces();
+}
+
+void Agent::CommandComponent::send_pieces() {
+  protect([&] {
+    const wire::SenderState link = context_.wire->sender();
+    for (const transfer::Piece& piece : context_.content->due(now(), link))
+      context_.radio->send(piece, context_.content->session());
+    if (!context_.carrier) return;
+    if (const auto receipts = context_.carrier->due(now(), link.link != nullptr ? link.link->bandwidth : 0.0))
+      context_.radio->send(context_.carrier->id(), *receipts);
+  });
 }
 
 StoredFrames Agent::CommandComponent::stored_place() const {

@@ -2,6 +2,7 @@
 #include "robot_agent/carry/carried_blocks.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace adit::agent {
 namespace {
@@ -12,7 +13,9 @@ using transfer::PeerId;
 static_assert(transfer::ContentDigest::kParts == MapDigest::kParts);
 
 constexpr std::uint32_t kCoarse = perception::BlockUpdate::kCoarseRevision;
-constexpr std::size_t kLookedAt = 2048;  // Blocks from which one piece is chosen.
+constexpr std::size_t kLookedAt = 2048;   // Blocks from which one piece is chosen,
+constexpr std::size_t kPassed = 10'000;   // after at most so many were looked at.
+constexpr std::size_t kComparisons = 64;  // Digests that wait, the oldest of which is dropped.
 
 }  // namespace
 
@@ -96,49 +99,118 @@ bool CarriedBlocks::take(const perception::MapPiece& piece) {
   return complete;
 }
 
+std::optional<std::size_t> CarriedBlocks::slot_of(const PeerId& peer) const {
+  const auto slot = slots_.find(peer);
+  return slot && !joining_.contains(*slot) ? slot : std::nullopt;
+}
+
+void CarriedBlocks::tick() {
+  if (!joining_.empty()) return continue_join(joining_.begin()->first);
+  continue_compare();
+}
+
 void CarriedBlocks::compare(const PeerId& station, const transfer::ContentDigest& digest) {
-  const auto slot = slots_.find(station);
-  const auto robot = robots_.find(digest.robot);
-  if (!slot || robot == robots_.end()) return;
-  for (std::size_t i = 0; i < MapDigest::kPoses; ++i) {
-    Part& part = robot->second.parts[i];
-    if (part.missing[*slot] == 0 || part.sum != digest.parts[i]) continue;
+  std::erase_if(comparisons_, [&](const Comparison& waits) {
+    return waits.station == station && waits.digest.robot == digest.robot;
+  });
+  if (comparisons_.size() >= kComparisons) comparisons_.pop_front();
+  comparisons_.push_back({station, digest, 0});
+  continue_compare();
+}
+
+void CarriedBlocks::continue_compare() {
+  std::size_t looked = 0;
+  while (!comparisons_.empty() && looked < bounds_.slice) {
+    Comparison& now = comparisons_.front();
+    const auto slot = slots_.find(now.station);
+    const auto robot = robots_.find(now.digest.robot);
+    if (!slot || robot == robots_.end() || now.next_part == MapDigest::kPoses) {
+      comparisons_.pop_front();
+      continue;
+    }
+    if (joining_.contains(*slot)) return;
+    Part& part = robot->second.parts[now.next_part];
+    const bool equal = part.missing[*slot] > 0 && part.sum == now.digest.parts[now.next_part];
+    ++now.next_part;
+    if (!equal) continue;
     for (auto& [ref, block] : part.blocks) block.had_by |= PeerSlots::bit(*slot);
     part.missing[*slot] = 0;
+    looked += part.blocks.size();
   }
 }
 
 void CarriedBlocks::join(const PeerId& peer) {
   const auto slot = slots_.join(peer);
   if (!slot) return;
-  const auto others = static_cast<std::uint16_t>(~PeerSlots::bit(*slot));
-  for (auto& [name, robot] : robots_)
-    for (Part& part : robot.parts) {
-      for (auto& [ref, block] : part.blocks) block.had_by &= others;
-      part.missing[*slot] = part.blocks.size();
+  joining_[*slot] = {};
+  continue_join(*slot);
+}
+
+void CarriedBlocks::leave(const PeerId& peer) {
+  if (const auto slot = slots_.find(peer)) joining_.erase(*slot);
+  slots_.leave(peer);
+}
+
+bool CarriedBlocks::clear_slice(Cursor& cursor, std::size_t slot) {
+  const auto others = static_cast<std::uint16_t>(~PeerSlots::bit(slot));
+  std::size_t looked = 0;
+  for (auto robot = robots_.lower_bound(cursor.robot); robot != robots_.end(); ++robot) {
+    if (robot->first != cursor.robot) cursor = {robot->first, {}};
+    for (Position& at = cursor.at; at.part < robot->second.parts.size(); ++at.part, at.ref.reset()) {
+      auto& blocks = robot->second.parts[at.part].blocks;
+      for (auto block = at.ref ? blocks.lower_bound(*at.ref) : blocks.begin(); block != blocks.end();
+           ++block) {
+        if (looked++ == bounds_.slice) {
+          at.ref = block->first;
+          return false;
+        }
+        block->second.had_by &= others;
+      }
     }
+  }
+  return true;
+}
+
+void CarriedBlocks::continue_join(std::size_t slot) {
+  if (!clear_slice(joining_.at(slot), slot)) return;
+  joining_.erase(slot);
+  for (auto& [name, robot] : robots_) {
+    robot.lacked_from[slot] = {};
+    for (Part& part : robot.parts) part.missing[slot] = part.blocks.size();
+  }
 }
 
 std::size_t CarriedBlocks::missing(const PeerId& peer) const {
   const auto slot = slots_.find(peer);
   if (!slot) return 0;
+  const bool joins = joining_.contains(*slot);
   std::size_t out = 0;
   for (const auto& [name, robot] : robots_) {
     if (!wants_(peer, name)) continue;
-    for (const Part& part : robot.parts) out += part.missing[*slot];
+    for (const Part& part : robot.parts) out += joins ? part.blocks.size() : part.missing[*slot];
   }
   return out;
 }
 
-std::vector<CarriedBlocks::Candidate> CarriedBlocks::lacked(const Robot& robot, std::size_t slot) const {
+std::vector<CarriedBlocks::Candidate> CarriedBlocks::lacked(Robot& robot, std::size_t slot) const {
   std::vector<Candidate> out;
-  for (std::size_t i = 0; i < robot.parts.size() && out.size() < kLookedAt; ++i) {
+  const Position from = std::exchange(robot.lacked_from[slot], {});
+  std::size_t looked = 0;
+  for (std::size_t i = from.part; i < robot.parts.size() && out.size() < kLookedAt && looked < kPassed; ++i) {
     if (robot.parts[i].missing[slot] == 0) continue;
-    for (const auto& [ref, block] : robot.parts[i].blocks) {
+    const auto& blocks = robot.parts[i].blocks;
+    for (auto it = i == from.part && from.ref ? blocks.lower_bound(*from.ref) : blocks.begin();
+         it != blocks.end(); ++it) {
+      const auto& [ref, block] = *it;
+      if (looked++ == kPassed) {
+        robot.lacked_from[slot] =
+            out.empty() ? Position{i, ref} : Position{out.front().at.part, out.front().at.ref};
+        break;
+      }
       if ((block.had_by & PeerSlots::bit(slot)) != 0 ||
           (!out.empty() && out.front().at.ref.submap != ref.submap))
         continue;
-      out.push_back({{i, ref, block.revision},
+      out.push_back({{i, ref, block.known, block.occupied, block.revision},
                      {{ref.index, block.known, block.occupied}, block.revision, block.revision == kCoarse}});
     }
   }
@@ -150,12 +222,16 @@ std::vector<CarriedBlocks::Candidate> CarriedBlocks::lacked(const Robot& robot, 
   return out;
 }
 
-std::optional<transfer::Source::Content> CarriedBlocks::next(std::span<const PeerId> peers,
-                                                             std::size_t max_bytes, Time) {
+void CarriedBlocks::encode_on(Executor& strand, Task ready) {
+  strand_ = &strand;
+  ready_ = std::move(ready);
+}
+
+bool CarriedBlocks::begin_piece(std::span<const PeerId> peers, std::size_t max_bytes) {
   Flight flight;
   std::vector<Candidate> chosen;
   for (auto peer = peers.begin(); peer != peers.end() && chosen.empty(); ++peer) {
-    const auto slot = slots_.find(*peer);
+    const auto slot = slot_of(*peer);
     if (!slot) continue;
     for (auto robot = robots_.begin(); robot != robots_.end() && chosen.empty(); ++robot)
       if (wants_(*peer, robot->first)) {
@@ -163,33 +239,65 @@ std::optional<transfer::Source::Content> CarriedBlocks::next(std::span<const Pee
         chosen = lacked(robot->second, *slot);
       }
   }
-  if (chosen.empty()) return std::nullopt;
-  Robot& robot = robots_.at(flight.robot);
-  std::vector<perception::BlockUpdate> updates;
+  if (chosen.empty()) return false;
+  chosen.resize(std::min(chosen.size(), perception::kMaxPieceBlocks));
+  const Robot& robot = robots_.at(flight.robot);
+  PieceJob job{robot.submaps[chosen.front().at.ref.submap], {}, {}, max_bytes};
   for (const Candidate& candidate : chosen) {
-    updates.push_back(candidate.update);
+    job.blocks.push_back(candidate.update);
     // Of a block in large voxels the revision does not matter, and equal ones take no space.
-    if (candidate.update.coarse) updates.back().revision = chosen.front().update.revision;
+    if (candidate.update.coarse) job.blocks.back().revision = chosen.front().update.revision;
+    flight.blocks.push_back(candidate.at);
   }
-  auto packed = perception::pack(robot.submaps[chosen.front().at.ref.submap], updates, max_bytes);
-  if (packed.count == 0) return std::nullopt;
-  for (std::size_t i = 0; i < packed.count; ++i) {
-    Part& part = robot.parts[chosen[i].at.part];
-    Block& block = part.blocks.at(chosen[i].at.ref);
+  pending_ = Pending{++pieces_begun_, std::move(flight), max_bytes, {}};
+  compute_or_now(
+      strand_, {.name = "carried piece to send", .modelled = kPieceCoding},
+      [job = std::move(job)] { return job.run(); },
+      [this, number = pieces_begun_](Result<perception::PackedPiece> packed) {
+        if (!pending_ || pending_->number != number) return;
+        // Of one that could not be encoded, the blocks are chosen again.
+        if (!packed) return pending_.reset();
+        pending_->packed = std::move(*packed);
+        if (ready_) ready_();
+      });
+  return true;
+}
+
+std::optional<transfer::Source::Content> CarriedBlocks::next(std::span<const PeerId> peers,
+                                                             std::size_t max_bytes, Time) {
+  // What was encoded for another link, or peers that want it no more, is of no use.
+  if (pending_ && pending_->packed) {
+    const bool wanted = std::any_of(peers.begin(), peers.end(), [this](const PeerId& peer) {
+      return slot_of(peer) && wants_(peer, pending_->content.robot);
+    });
+    if (!wanted || max_bytes < pending_->max_bytes) pending_.reset();
+  }
+  if (!pending_ && !begin_piece(peers, max_bytes)) return std::nullopt;
+  if (!pending_ || !pending_->packed) return std::nullopt;
+  Pending piece = std::move(*pending_);
+  pending_.reset();
+  piece.content.blocks.resize(piece.packed->count);
+  if (piece.content.blocks.empty()) return std::nullopt;
+  Robot& robot = robots_.at(piece.content.robot);
+  for (const Sent& sent : piece.content.blocks) {
+    Part& part = robot.parts[sent.part];
+    Block& block = part.blocks.at(sent.ref);
+    // A newer state came while the piece was encoded: it goes in another one.
+    if (block.revision != sent.revision || block.known != sent.known || block.occupied != sent.occupied)
+      continue;
     for (const PeerId& peer : peers) {
-      const auto slot = slots_.find(peer);
+      const auto slot = slot_of(peer);
       if (!slot || (block.had_by & PeerSlots::bit(*slot)) != 0) continue;
       block.had_by |= PeerSlots::bit(*slot);
       --part.missing[*slot];
     }
-    flight.blocks.push_back(chosen[i].at);
   }
-  flights_[++tokens_] = std::move(flight);
-  return Content{tokens_, std::move(packed.bytes)};
+  flights_[++tokens_] = std::move(piece.content);
+  return Content{tokens_, std::move(piece.packed->bytes)};
 }
 
 void CarriedBlocks::lost(const PeerId& peer, std::uint64_t token) {
-  const auto slot = slots_.find(peer);
+  const auto slot = slot_of(peer);
   const auto flight = flights_.find(token);
   if (!slot || flight == flights_.end()) return;
   Robot& robot = robots_.at(flight->second.robot);

@@ -2,15 +2,19 @@
 #pragma once
 #include <array>
 #include <compare>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/exec/executor.hpp"
 #include "core/transfer/source.hpp"
 #include "perception/stream/map_digest.hpp"
 #include "perception/stream/piece.hpp"
+#include "robot_agent/perception/piece_job.hpp"
 
 namespace adit::agent {
 
@@ -19,6 +23,7 @@ struct CarryBounds {
   std::size_t max_robots{16};
   std::size_t max_submaps{1024};    ///< Of one robot.
   std::size_t max_blocks{200'000};  ///< Of all robots; each takes about 100 B.
+  std::size_t slice{3000};          ///< Blocks that are looked at in one call, [1, 10^7].
 };
 
 /// Whether a station should get a robot's map from here now.
@@ -43,9 +48,17 @@ class PeerSlots {
 /// The blocks of other robots' maps, for the stations that lack them: the newest state that came of each,
 /// under the names and revisions that its robot gave it. A block goes to a station once, unless it is lost or
 /// a newer state comes. Parts whose digest is that of the station do not go.
+///
+/// It runs on a strand that has little time, as BlockSource: pieces are encoded by `compute`, and what takes
+/// time in proportion to the map is done in slices.
 class CarriedBlocks final : public transfer::Source {
  public:
   CarriedBlocks(CarryBounds bounds, WantsMap wants) : bounds_(bounds), wants_(std::move(wants)) {}
+
+  /// See BlockSource::encode_on().
+  void encode_on(Executor& strand, Task ready);
+  /// Goes on with peers that join, and with digests.
+  void tick();
 
   /// Takes blocks of one robot's map. Returns whether there was room for all of them.
   bool take(const perception::MapPiece& piece);
@@ -60,7 +73,7 @@ class CarriedBlocks final : public transfer::Source {
 
   transfer::Kind kind() const override { return transfer::Kind::carried_blocks; }
   void join(const transfer::PeerId& peer) override;
-  void leave(const transfer::PeerId& peer) override { slots_.leave(peer); }
+  void leave(const transfer::PeerId& peer) override;
   std::size_t missing(const transfer::PeerId& peer) const override;
   std::optional<Content> next(std::span<const transfer::PeerId> peers, std::size_t max_bytes,
                               Time now) override;
@@ -85,15 +98,33 @@ class CarriedBlocks final : public transfer::Source {
     std::array<std::size_t, PeerSlots::kSlots> missing{};  ///< Blocks that the peer of each slot lacks.
     std::uint32_t sum{};
   };
+  /// A place in a robot's map, from which it is looked at.
+  struct Position {
+    std::size_t part{};
+    std::optional<Ref> ref{};  ///< Nothing: the first one.
+  };
   struct Robot {
     std::vector<perception::SubmapKey> submaps{};
     std::map<perception::SubmapKey, std::size_t> numbers{};  ///< The place of each in `submaps`.
     std::array<Part, perception::MapDigest::kPoses> parts{};
+    std::array<Position, PeerSlots::kSlots> lacked_from{};  ///< See lacked().
     std::size_t size() const;
+  };
+  /// How far the blocks of all robots were looked at.
+  struct Cursor {
+    std::string robot{};
+    Position at{};
+  };
+  /// A digest of which only parts were compared yet.
+  struct Comparison {
+    transfer::PeerId station{};
+    transfer::ContentDigest digest{};
+    std::size_t next_part{};
   };
   struct Sent {
     std::size_t part{};
     Ref ref{};
+    std::uint64_t known{}, occupied{};
     std::uint32_t revision{};
   };
   struct Flight {
@@ -105,8 +136,24 @@ class CarriedBlocks final : public transfer::Source {
     Sent at{};
     perception::BlockUpdate update{};
   };
-  /// What the peer of a slot lacks of a robot's map: blocks of one submap, the newest first.
-  std::vector<Candidate> lacked(const Robot& robot, std::size_t slot) const;
+  /// A piece that is encoded.
+  struct Pending {
+    std::uint64_t number{};
+    Flight content{};
+    std::size_t max_bytes{};
+    std::optional<perception::PackedPiece> packed{};  ///< Nothing: not yet.
+  };
+  /// The slot of a peer that has joined.
+  std::optional<std::size_t> slot_of(const transfer::PeerId& peer) const;
+  /// Clears the bit of a slot in the next blocks. Returns whether those were the last.
+  bool clear_slice(Cursor& cursor, std::size_t slot);
+  void continue_join(std::size_t slot);
+  /// Compares the next parts of digests.
+  void continue_compare();
+  bool begin_piece(std::span<const transfer::PeerId> peers, std::size_t max_bytes);
+  /// What the peer of a slot lacks of a robot's map: blocks of one submap, the newest first. Looks at a
+  /// bounded number of blocks; the next call begins where it found the first one.
+  std::vector<Candidate> lacked(Robot& robot, std::size_t slot) const;
   std::optional<std::size_t> number_of(Robot& robot, const perception::SubmapKey& key) const;
 
   CarryBounds bounds_;
@@ -116,6 +163,12 @@ class CarriedBlocks final : public transfer::Source {
   std::map<std::uint64_t, Flight> flights_{};
   std::uint64_t tokens_{};
   std::size_t blocks_{};
+  std::map<std::size_t, Cursor> joining_{};  ///< By slot: up to there, nothing is of the peer before.
+  std::deque<Comparison> comparisons_{};
+  std::optional<Pending> pending_{};
+  std::uint64_t pieces_begun_{};
+  Executor* strand_{};  ///< Null: pieces are encoded by next().
+  Task ready_{};
 };
 
 }  // namespace adit::agent

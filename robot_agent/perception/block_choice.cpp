@@ -24,13 +24,22 @@ constexpr Duration kPieceRest = 200ms;      // Between two looks when there is n
 constexpr Duration kFocusRest = 1s;         // Between two looks at the focus when it lacks nothing.
 constexpr std::uint64_t kChangedEvery = 4;  // One piece of so many is for changed blocks first.
 
+/// The lowest 16 bits of a number, each in the place of three.
+std::uint64_t spread(std::uint64_t bits) {
+  bits &= 0xffff;
+  bits = (bits | bits << 32) & 0x001f'0000'0000'ffff;
+  bits = (bits | bits << 16) & 0x001f'0000'ff00'00ff;
+  bits = (bits | bits << 8) & 0x100f'00f0'0f00'f00f;
+  bits = (bits | bits << 4) & 0x10c3'0c30'c30c'30c3;
+  return (bits | bits << 2) & 0x1249'2492'4924'9249;
+}
+
 /// The bits of the three numbers in turn: what is near in this order is near in space (Morton 1966).
 std::uint64_t z_order(const perception::BlockIndex& index) {
-  std::uint64_t out = 0;
-  for (int bit = 15; bit >= 0; --bit)
-    for (const std::int32_t axis : {index.x, index.y, index.z})
-      out = out << 1 | (static_cast<std::uint32_t>(axis + perception::BlockIndex::kLimit) >> bit & 1);
-  return out;
+  const auto axis = [](std::int32_t number) {
+    return spread(static_cast<std::uint32_t>(number + perception::BlockIndex::kLimit));
+  };
+  return axis(index.x) << 2 | axis(index.y) << 1 | axis(index.z);
 }
 
 }  // namespace
@@ -38,20 +47,25 @@ std::uint64_t z_order(const perception::BlockIndex& index) {
 /// Candidates for a piece, those first that should go first.
 struct BlockSource::Choice {
   struct Candidate {
-    LatticeCell cell{};
-    bool late{};    ///< It cannot wait for a full piece.
-    bool coarse{};  ///< In voxels of 0.4 m.
+    const Cell* cell{};
+    std::uint64_t order{};  ///< Of its index, see z_order().
+    bool late{};            ///< It cannot wait for a full piece.
+    bool coarse{};          ///< In voxels of 0.4 m.
+
+    std::uint64_t group() const { return cell->first.group; }
   };
   std::vector<Candidate> all{};
-  std::set<LatticeCell> focused{};
+  std::set<const Cell*> focused{};
 
-  void add(const LatticeCell& cell, bool late, bool coarse = false) { all.push_back({cell, late, coarse}); }
+  void add(const Cell& cell, bool late, bool coarse = false) {
+    all.push_back({&cell, z_order(cell.first.index), late, coarse});
+  }
   /// Puts those from `first` to `last` into an order in which neighbours follow each other, from the one that
   /// is first now on: in a piece, neighbours take least.
   void gather(std::ptrdiff_t first, std::ptrdiff_t last) {
     if (first == last) return;
     const auto begin = all.begin() + first, end = all.begin() + last;
-    const auto key = [](const Candidate& c) { return std::pair(c.cell.group, z_order(c.cell.index)); };
+    const auto key = [](const Candidate& c) { return std::pair(c.group(), c.order); };
     const auto from = key(*begin);
     std::sort(begin, end, [&](const auto& a, const auto& b) { return key(a) < key(b); });
     std::rotate(begin, std::find_if(begin, end, [&](const auto& c) { return key(c) == from; }), end);
@@ -68,20 +82,21 @@ struct BlockSource::Choice {
   /// Those of one group: of the first one that is late, or else of which there are most.
   std::vector<Candidate> of_one_group() const {
     std::map<std::uint64_t, std::size_t> count;
-    for (const Candidate& candidate : all) ++count[candidate.cell.group];
+    for (const Candidate& candidate : all) ++count[candidate.group()];
     std::uint64_t group = std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) {
                             return a.second < b.second;
                           })->first;
     const auto late = std::find_if(all.begin(), all.end(), [](const Candidate& c) { return c.late; });
-    if (late != all.end()) group = late->cell.group;
+    if (late != all.end()) group = late->group();
     std::vector<Candidate> out;
     for (const Candidate& candidate : all)
-      if (candidate.cell.group == group) out.push_back(candidate);
+      if (candidate.group() == group) out.push_back(candidate);
     return out;
   }
   static std::vector<Part> parts_of(const std::vector<Candidate>& candidates) {
     std::vector<Part> out;
-    for (const Candidate& candidate : candidates) out.push_back({candidate.cell, candidate.coarse, 0});
+    for (std::size_t i = 0; i < std::min(candidates.size(), kBlocksInPiece); ++i)
+      out.push_back({.cell = candidates[i].cell->first, .coarse = candidates[i].coarse});
     return out;
   }
 };
@@ -125,8 +140,8 @@ std::size_t BlockSource::add_slice(const BlockRecipient& peer, const BlockRegion
     if (cell.index.z < region.low.z || cell.index.z > region.high.z) continue;
     const bool rested = now - place.changed >= params_.hold && peer.resting.contains(place.change);
     if (!rested && !peer.unseen.contains(place.change)) continue;
-    if (!place.is_on_its_way(peer.bit) && out.focused.insert(cell).second)
-      out.add(cell, true, !rested && goes_coarse(place, peer.bit, now));
+    if (!place.is_on_its_way(peer.bit) && out.focused.insert(&*it).second)
+      out.add(*it, true, !rested && goes_coarse(place, peer.bit, now));
   }
   return looked;
 }
@@ -149,31 +164,30 @@ void BlockSource::add_focused(BlockRecipient& peer, Time now, Choice& out) {
 }
 
 void BlockSource::add_unseen(const BlockRecipient& peer, Duration wait, Time now, Choice& out) const {
-  std::vector<std::pair<const LatticeCell*, const Place*>> seen;
+  std::vector<const Cell*> seen;
   std::size_t looked = 0;
   for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < kLookedAt; ++it, ++looked) {
-    const Place& place = cells_.at(it->second);
+    const Place& place = it->second->second;
     // When it has arrived, what changed since is enough.
-    if (!place.is_on_its_way(peer.bit) && !out.focused.contains(it->second))
-      seen.emplace_back(&it->second, &place);
+    if (!place.is_on_its_way(peer.bit) && !out.focused.contains(it->second)) seen.push_back(it->second);
   }
   const Duration longest = (seen.size() < kFew ? 3 : 1) * wait;
-  for (const auto& [cell, place] : seen) {
-    const Due is_due = due(*place, place->grew_since, {params_.settle, longest, longest}, now);
-    if (is_due != Due::no) out.add(*cell, is_due == Due::late, goes_coarse(*place, peer.bit, now));
+  for (const Cell* cell : seen) {
+    const Place& place = cell->second;
+    const Due is_due = due(place, place.grew_since, {params_.settle, longest, longest}, now);
+    if (is_due != Due::no) out.add(*cell, is_due == Due::late, goes_coarse(place, peer.bit, now));
   }
 }
 
-std::size_t BlockSource::add_held(const BlockRecipient& peer,
-                                  const std::map<std::uint64_t, LatticeCell>& places, std::size_t most,
+std::size_t BlockSource::add_held(const BlockRecipient& peer, const Lacked& places, std::size_t most,
                                   Time now, Choice& out) const {
   std::size_t looked = 0, added = 0;
   for (const auto& [change, cell] : places) {
     if (looked++ >= kLookedAt || added >= most) break;
-    const Place& place = cells_.at(cell);
+    const Place& place = cell->second;
     if (place.is_on_its_way(peer.bit) || out.focused.contains(cell)) continue;
     const Due is_due = due(place, place.waits_since, held(), now);
-    if (is_due != Due::no) out.add(cell, is_due == Due::late), ++added;
+    if (is_due != Due::no) out.add(*cell, is_due == Due::late), ++added;
   }
   return added;
 }
@@ -202,16 +216,14 @@ std::vector<BlockSource::Part> BlockSource::choose_coarse(BlockRecipient& peer) 
   for (auto it = peer.unseen.lower_bound(peer.coarse_below); it != peer.unseen.begin() && looked < kLookedAt;
        ++looked) {
     --it;
-    const Place& place = cells_.at(it->second);
+    const Place& place = it->second->second;
     const bool lacks = !place.is_fine(peer.bit) && place.lacks_coarse(peer.bit);
-    if (lacks) choice.add(it->second, true, true);
+    if (lacks) choice.add(*it->second, true, true);
     if (choice.all.empty()) peer.coarse_below = it->first;
   }
   if (choice.all.empty()) return {};
   choice.gather(0, std::ssize(choice.all));
-  std::vector<Part> out = Choice::parts_of(choice.of_one_group());
-  out.resize(std::min(out.size(), kBlocksInPiece));
-  return out;
+  return Choice::parts_of(choice.of_one_group());
 }
 
 std::vector<BlockSource::Part> BlockSource::choose(BlockRecipient& peer, std::size_t max_bytes, Time now) {
@@ -228,7 +240,7 @@ std::vector<BlockSource::Part> BlockSource::choose(BlockRecipient& peer, std::si
   if (!changed_first) add_resting(peer, now, choice);
   peer.behind = std::ssize(choice.all) - first > static_cast<std::ptrdiff_t>(kBacklog);
   // Free space shows an operator less than surfaces.
-  const auto is_surface = [this](const auto& candidate) { return cells_.at(candidate.cell).occupied != 0; };
+  const auto is_surface = [](const auto& candidate) { return candidate.cell->second.occupied != 0; };
   std::stable_partition(choice.all.begin() + first, choice.all.begin() + focused, is_surface);
   const auto free = std::stable_partition(choice.all.begin() + focused, choice.all.end(), is_surface);
   if (peer.behind) {
@@ -241,12 +253,12 @@ std::vector<BlockSource::Part> BlockSource::choose(BlockRecipient& peer, std::si
   if (!choice.all.empty()) {
     const auto candidates = choice.of_one_group();
     const bool late = std::any_of(candidates.begin(), candidates.end(), [](const auto& c) { return c.late; });
-    std::vector<Part> out = Choice::parts_of(candidates);
-    const bool full = bytes_of(out, peer.bit).sum() >= params_.fill * static_cast<double>(max_bytes);
+    Bytes counts;
+    for (const auto& each : candidates) counts.add(each.coarse, each.cell->second.has_base(peer.bit));
+    const bool full = expected(counts).sum() >= params_.fill * static_cast<double>(max_bytes);
     if (full || (late && (peer.behind || !peer.round_ends || now >= *peer.round_ends))) {
       if (!full) peer.round_ends = now + longer * params_.round;
-      out.resize(std::min(out.size(), kBlocksInPiece));
-      return out;
+      return Choice::parts_of(candidates);
     }
   }
   peer.rests_until = now + kPieceRest;

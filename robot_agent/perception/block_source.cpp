@@ -9,7 +9,6 @@ namespace adit::agent {
 namespace {
 
 using perception::BlockIndex;
-using perception::BlockUpdate;
 using perception::in_large_voxels;
 using transfer::PeerId;
 
@@ -17,8 +16,6 @@ constexpr std::uint64_t kAlone = 1ULL << 63U;  // Groups of submaps without a la
 constexpr double kCovered = 0.9;
 constexpr std::size_t kVotes = 3;             // The newest ones decide, see BlockVotes.
 constexpr std::size_t kLookedForCovered = 8;  // Oldest submaps: a few ms.
-constexpr double kLearned = 0.1;              // Weight of the newest piece in the mean size of a block,
-constexpr double kLearnedFrom = 100.0;        // if it has so many.
 
 }  // namespace
 
@@ -83,12 +80,13 @@ BlockVotes BlockSource::votes_of(const LatticeCell& cell, const Place& place,
   return votes;
 }
 
-bool BlockSource::add_missing(BlockRecipient& peer, const LatticeCell& cell, const Place& place) {
+bool BlockSource::add_missing(BlockRecipient& peer, Cell& cell) {
+  const Place& place = cell.second;
   peer.forget(place.change);
   const std::uint64_t has = (place.up_to_date & peer.bit) != 0 ? place.sent_known : 0;
   const bool grows = (in_large_voxels(place.known) & ~in_large_voxels(has)) != 0;
   const bool rests = !place.is_fine(peer.bit) && !place.lacks_coarse(peer.bit);
-  (!grows ? peer.changed : rests ? peer.resting : peer.unseen)[place.change] = cell;
+  (!grows ? peer.changed : rests ? peer.resting : peer.unseen)[place.change] = &cell;
   return grows && !rests;
 }
 
@@ -99,8 +97,9 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
   if (!added && stored.known == block.known && stored.occupied == block.occupied) return;
   changes_ = std::max<std::uint64_t>(changes_ + 1, revision);
   stored = {block.known, block.occupied, changes_};
-  const LatticeCell cell = cell_of(ref);
-  Place& place = cells_[cell];
+  Cell& entry = *cells_.try_emplace(cell_of(ref)).first;
+  const LatticeCell cell = entry.first;
+  Place& place = entry.second;
   if (added)
     place.submaps.insert(std::upper_bound(place.submaps.begin(), place.submaps.end(), submap), submap);
   const BlockVotes votes = votes_of(cell, place);
@@ -112,8 +111,8 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
     place.change = changes_;
     place.changed = now_;
     for (auto& [id, peer] : peers_) {
-      if ((place.up_to_date & peer.bit) != 0 && place.is_sent()) continue;
-      grew = add_missing(peer, cell, place) || grew;
+      if (!peer.covers(cell) || ((place.up_to_date & peer.bit) != 0 && place.is_sent())) continue;
+      grew = add_missing(peer, entry) || grew;
       lacked = true;
     }
     if (!lacked) place.waits_since.reset(), place.grew_since.reset();
@@ -158,28 +157,33 @@ void BlockSource::has(const PeerId& id, const std::set<std::uint32_t>& submaps) 
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
   BlockRecipient& peer = found->second;
-  for (auto& [cell, place] : cells_) {
-    if (!std::all_of(place.submaps.begin(), place.submaps.end(),
-                     [&](std::uint32_t submap) { return submaps.contains(submap); }))
-      continue;
-    if (place.up_to_date == 0) {
-      place.sent_known = place.known;
-      place.sent_occupied = place.occupied;
-      place.sent_change = place.change;
-      place.had_by = 0;
-    } else if (!place.is_sent()) {
-      continue;
-    }
-    place.up_to_date |= peer.bit;
-    place.acknowledge(peer.bit);
-    place.waits_since.reset();
-    peer.forget(place.change);
+  for (auto cell = cells_.begin(); cell != cells_.end() && peer.covers(cell->first); ++cell)
+    note_had(peer, *cell, submaps);
+  if (!peer.has_joined()) peer.has = submaps;
+}
+
+void BlockSource::note_had(BlockRecipient& peer, Cell& cell, const std::set<std::uint32_t>& submaps) {
+  Place& place = cell.second;
+  if (!std::all_of(place.submaps.begin(), place.submaps.end(),
+                   [&](std::uint32_t submap) { return submaps.contains(submap); }))
+    return;
+  if (place.up_to_date == 0) {
+    place.sent_known = place.known;
+    place.sent_occupied = place.occupied;
+    place.sent_change = place.change;
+    place.had_by = 0;
+  } else if (!place.is_sent()) {
+    return;
   }
+  place.up_to_date |= peer.bit;
+  place.acknowledge(peer.bit);
+  place.waits_since.reset();
+  peer.forget(place.change);
 }
 
 bool BlockSource::complete(const PeerId& id, std::uint32_t submap) const {
   const auto peer = peers_.find(id);
-  if (peer == peers_.end()) return false;
+  if (peer == peers_.end() || !peer->second.has_joined()) return false;
   for (auto it = blocks_.lower_bound(first_of(submap)); it != blocks_.end() && it->first.submap == submap;
        ++it) {
     const Place& place = cells_.at(cell_of(it->first));
@@ -246,6 +250,13 @@ void BlockSource::make_room() {
   ++dropped_;
 }
 
+void BlockSource::tick(Time now) {
+  now_ = now;
+  const auto joining =
+      std::find_if(peers_.begin(), peers_.end(), [](const auto& peer) { return !peer.second.has_joined(); });
+  if (joining != peers_.end()) continue_join(joining->second);
+}
+
 void BlockSource::join(const PeerId& id) {
   leave(id);
   if (peers_.size() >= kMaxPeers) return;
@@ -254,173 +265,38 @@ void BlockSource::join(const PeerId& id) {
   BlockRecipient& peer = peers_[id];
   peer.bit = 1;
   while ((used & peer.bit) != 0) peer.bit = static_cast<std::uint16_t>(peer.bit << 1);
-  for (auto& [cell, place] : cells_) {
-    if (add_missing(peer, cell, place) && !place.grew_since) place.grew_since = now_;
+  // The bases of a piece that is encoded may be those of the peer that had this bit before.
+  if (pending_ && (pending_->to & peer.bit) != 0) pending_.reset();
+  peer.joins_from = cells_.empty() ? LatticeCell{} : cells_.begin()->first;
+  continue_join(peer);
+}
+
+void BlockSource::continue_join(BlockRecipient& peer) {
+  auto cell = cells_.lower_bound(*peer.joins_from);
+  for (std::size_t looked = 0; cell != cells_.end() && looked < params_.slice; ++cell, ++looked) {
+    Place& place = cell->second;
+    place.forget(peer.bit);
+    if (add_missing(peer, *cell) && !place.grew_since) place.grew_since = now_;
     if (!place.waits_since) place.waits_since = now_;
+    if (!peer.has.empty()) note_had(peer, *cell, peer.has);
   }
+  if (cell != cells_.end()) {
+    peer.joins_from = cell->first;
+    return;
+  }
+  peer.joins_from.reset();
+  peer.has.clear();
   peer.behind = peer.unseen.size() > kBacklog;
 }
 
-void BlockSource::leave(const PeerId& id) {
-  const auto found = peers_.find(id);
-  if (found == peers_.end()) return;
-  for (auto& [cell, place] : cells_) place.forget(found->second.bit);
-  peers_.erase(found);
-}
+// Its bits stay until another peer joins under them.
+void BlockSource::leave(const PeerId& id) { peers_.erase(id); }
 
 std::size_t BlockSource::missing(const PeerId& id) const {
   const auto found = peers_.find(id);
-  return found == peers_.end()
-             ? 0
-             : found->second.unseen.size() + found->second.resting.size() + found->second.changed.size();
-}
-
-std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerId> peers,
-                                                           std::size_t max_bytes, Time now) {
-  now_ = now;
-  std::uint16_t to = 0;
-  for (const PeerId& id : peers)
-    if (const auto peer = peers_.find(id); peer != peers_.end()) to |= peer->second.bit;
-  std::vector<Part> chosen;
-  // What the one that lacks most lacks may have to wait, while another one lacks what is due.
-  for (auto id = peers.begin(); id != peers.end() && chosen.empty(); ++id) {
-    const auto peer = peers_.find(*id);
-    if (peer == peers_.end()) continue;
-    if (is_coarse_first(peer->second, max_bytes)) chosen = choose_coarse(peer->second);
-    if (chosen.empty()) chosen = choose(peer->second, max_bytes, now);
-  }
-  if (chosen.empty()) return std::nullopt;
-  const std::uint64_t group = chosen.front().cell.group;
-  const auto named = first_.find(group);
-  const std::uint32_t submap = named != first_.end() ? named->second : static_cast<std::uint32_t>(group);
-  // One revision for all blocks takes no space, and is newer than all that was sent before.
-  const auto newest = static_cast<std::uint32_t>(++changes_);
-  std::vector<BlockUpdate> updates;
-  for (const Part& part : chosen) {
-    const Place& place = cells_.at(part.cell);
-    updates.push_back({{ref_in(part.cell, submap).index, place.known, place.occupied}, newest, part.coarse});
-  }
-  const auto find_base = [&](const BlockIndex& index) -> std::optional<perception::CoarseBlock> {
-    const Place& place = cells_.at(cell_of({submap, index}));
-    if (!place.has_base(to)) return std::nullopt;
-    return perception::CoarseBlock{index, place.base_known, place.base_occupied};
-  };
-  const SubmapPlace name = place_of(submap);
-  auto packed = perception::pack({params_.robot, name.start, name.index}, updates, max_bytes, find_base);
-  if (packed.count == 0) return std::nullopt;
-  chosen.resize(packed.count);
-  learn(chosen, to, packed.bytes.size());
-  for (Part& part : chosen) {
-    Place& place = cells_.at(part.cell);
-    part.change = place.change;
-    if (part.coarse)
-      note_coarse(part.cell, place, to);
-    else
-      note_sent(part.cell, place, to);
-  }
-  flights_[++tokens_] = std::move(chosen);
-  return Content{tokens_, std::move(packed.bytes)};
-}
-
-BlockSource::Bytes BlockSource::bytes_of(const std::vector<Part>& parts, std::uint16_t to) const {
-  Bytes out;
-  for (const Part& part : parts)
-    (part.coarse ? out.coarse : cells_.at(part.cell).has_base(to) ? out.changes : out.complete) += 1.0;
-  out.coarse *= coarse_bytes_;
-  out.changes *= change_bytes_;
-  out.complete *= complete_bytes_;
-  return out;
-}
-
-void BlockSource::learn(const std::vector<Part>& sent, std::uint16_t to, std::size_t bytes) {
-  const Bytes expected = bytes_of(sent, to);
-  const double all = expected.sum() - Bytes::kHeader;
-  const double factor = (static_cast<double>(bytes) - Bytes::kHeader) / all - 1.0;
-  const double weight = std::min(1.0, static_cast<double>(sent.size()) / kLearnedFrom) * kLearned;
-  coarse_bytes_ *= 1.0 + weight * factor * expected.coarse / all;
-  change_bytes_ *= 1.0 + weight * factor * expected.changes / all;
-  complete_bytes_ *= 1.0 + weight * factor * expected.complete / all;
-}
-
-void BlockSource::note_coarse(const LatticeCell& cell, Place& place, std::uint16_t to) {
-  const std::uint64_t known = in_large_voxels(place.known);
-  if (known != place.coarse_known) place.coarse_by = place.coarse_missed_by = 0;
-  place.coarse_known = known;
-  place.coarse_change = place.change;
-  place.coarse_by |= to;
-  place.grew_since.reset();
-  for (auto& [id, peer] : peers_)
-    if ((place.up_to_date & peer.bit) == 0 || !place.is_sent()) add_missing(peer, cell, place);
-}
-
-void BlockSource::note_sent(const LatticeCell& cell, Place& place, std::uint16_t to) {
-  // A silent peer that acknowledged the same state still has it.
-  const auto has = static_cast<std::uint16_t>(place.is_sent() ? place.up_to_date & place.had_by : 0);
-  place.waits_since.reset();
-  place.grew_since.reset();
-  place.sent_known = place.known;
-  place.sent_occupied = place.occupied;
-  place.sent_change = place.change;
-  place.up_to_date = has | to;
-  place.had_by = has;
-  for (auto& [id, peer] : peers_) {
-    if ((place.up_to_date & peer.bit) != 0)
-      peer.forget(place.change);
-    else
-      add_missing(peer, cell, place);  // A peer that is silent now has an older state, or none.
-  }
-}
-
-void BlockSource::acknowledged(const PeerId& id, std::uint64_t token) {
-  const auto peer = peers_.find(id);
-  const auto flight = flights_.find(token);
-  if (peer == peers_.end() || flight == flights_.end()) return;
-  const std::uint16_t bit = peer->second.bit;
-  for (const Part& part : flight->second) {
-    const auto found = cells_.find(part.cell);
-    if (found == cells_.end() || part.coarse) continue;
-    Place& place = found->second;
-    if (place.sent_change == part.change) {
-      place.acknowledge(bit);
-    } else if (!place.is_fine(bit)) {
-      place.seen_by |= bit;  // It takes no voxels of 0.4 m any more.
-      add_missing(peer->second, part.cell, place);
-    }
-  }
-}
-
-void BlockSource::lost(const PeerId& id, std::uint64_t token) {
-  const auto peer = peers_.find(id);
-  const auto flight = flights_.find(token);
-  if (peer == peers_.end() || flight == flights_.end()) return;
-  const std::uint16_t bit = peer->second.bit;
-  for (const Part& part : flight->second) {
-    const auto found = cells_.find(part.cell);
-    if (found == cells_.end()) continue;
-    Place& place = found->second;
-    // A newer state went out since, or it has this one from another piece.
-    if (part.coarse ? place.coarse_change != part.change
-                    : place.sent_change != part.change || (place.had_by & bit) != 0)
-      continue;
-    // Twice, it was lost for good: a station that takes no large voxels must get the small ones.
-    if (part.coarse && (place.is_fine(bit) || (place.coarse_missed_by & bit) != 0)) continue;
-    place.grew_since = Time(Duration::min() / 2);  // Waits are for what arrived.
-    if (part.coarse) {
-      place.coarse_by &= static_cast<std::uint16_t>(~bit);
-      place.coarse_missed_by |= bit;
-      peer->second.coarse_below = std::max(peer->second.coarse_below, place.change + 1);
-    } else {
-      place.waits_since = place.grew_since;
-      // Once may be an accident; twice: the peer may have another state than is thought here.
-      if ((place.missed_by & bit) != 0) place.base_by &= static_cast<std::uint16_t>(~bit);
-      place.missed_by |= bit;
-      place.up_to_date &= static_cast<std::uint16_t>(~bit);
-    }
-    add_missing(peer->second, part.cell, place);
-    peer->second.rests_until.reset();
-    peer->second.round_ends.reset();
-    peer->second.changed_rests_until.reset();
-  }
+  if (found == peers_.end()) return 0;
+  const BlockRecipient& peer = found->second;
+  return peer.has_joined() ? peer.unseen.size() + peer.resting.size() + peer.changed.size() : cells_.size();
 }
 
 }  // namespace adit::agent

@@ -3,15 +3,18 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "core/exec/executor.hpp"
 #include "core/transfer/source.hpp"
 #include "perception/map/block.hpp"
 #include "perception/stream/piece.hpp"
 #include "perception/types/submap_key.hpp"
 #include "robot_agent/perception/block_votes.hpp"
+#include "robot_agent/perception/piece_job.hpp"
 
 namespace adit::agent {
 
@@ -33,6 +36,7 @@ struct BlockSourceParams {
   double fill{0.8};  ///< Part of a piece from which on it is full, [0, 1].
   /// A station that lacks more than fills so many pieces gets voxels of 0.4 m of all of it first.
   std::size_t coarse_pieces{64};
+  std::size_t slice{3000};  ///< Cells that are looked up at once for a peer that joins: 1 ms, [1, 10^7].
 };
 
 /// Name and place of a submap. Submaps of one group lie in one lattice of blocks: they move together, and
@@ -62,6 +66,10 @@ struct BlockRegion {
 /// `coarse_pieces` pieces, it first gets voxels of 0.4 m of all that it lacks. Of a block whose last state it
 /// acknowledged, a station is sent what changed. All blocks of a piece are of one group. The map outlives
 /// the component that makes it. Submaps are numbered by age.
+///
+/// It runs on a strand that has little time. So a piece is chosen here, and encoded by `compute`, one at a
+/// time: next() has it once it is ready. What a peer that joins lacks is looked up in slices, one each time
+/// that tick() is called; it is sent nothing before.
 class BlockSource final : public transfer::Source {
  public:
   static constexpr std::size_t kMaxPeers = 16;
@@ -69,10 +77,14 @@ class BlockSource final : public transfer::Source {
 
   explicit BlockSource(BlockSourceParams params) : params_(std::move(params)) {}
 
+  /// Encodes pieces by `compute` of this strand, on which all calls are made, and calls `ready` when next()
+  /// has one. Without it, next() encodes.
+  void encode_on(Executor& strand, Task ready);
+
   /// Names a submap before its first block.
   void open(std::uint32_t submap, const SubmapPlace& place);
-  /// Says what the time is; what is updated now changes now.
-  void tick(Time now) { now_ = now; }
+  /// Says what the time is; what is updated now changes now. Looks up the next slice for a peer that joins.
+  void tick(Time now);
   /// Sets the newest state of a block; one that is equal to the stored one changes nothing. When there is no
   /// room, a submap is dropped: the oldest one that newer ones cover, or the oldest one.
   void update(std::uint32_t submap, const perception::CoarseBlock& block, std::uint32_t revision = 0);
@@ -170,12 +182,20 @@ class BlockSource final : public transfer::Source {
     void acknowledge(std::uint16_t by);
     void forget(std::uint16_t peer);
   };
-  /// What one peer lacks, by number of the change.
+  using Cells = std::map<LatticeCell, Place>;
+  using Cell = Cells::value_type;
+  /// Cells by the number of their present change; a cell leaves them before it is erased.
+  using Lacked = std::map<std::uint64_t, Cell*>;
+  /// What one peer lacks.
   struct BlockRecipient {
     std::uint16_t bit{};
-    std::map<std::uint64_t, LatticeCell> unseen{};   ///< With voxels of 0.4 m of which it knows nothing.
-    std::map<std::uint64_t, LatticeCell> resting{};  ///< That went in voxels of 0.4 m, and in no others.
-    std::map<std::uint64_t, LatticeCell> changed{};  ///< Others.
+    Lacked unseen{};   ///< With voxels of 0.4 m of which it knows nothing.
+    Lacked resting{};  ///< That went in voxels of 0.4 m, and in no others.
+    Lacked changed{};  ///< Others.
+    /// Cells from this one on were not looked up since it joined: they have the bits of the peer before it.
+    /// Nothing: it has joined.
+    std::optional<LatticeCell> joins_from{};
+    std::set<std::uint32_t> has{};      ///< While it joins: the submaps given to BlockSource::has().
     std::optional<Time> rests_until{};  ///< There was not enough for a piece when it was looked at last.
     std::optional<Time> changed_rests_until{};  ///< Nothing in `changed` was due then.
     std::vector<BlockRegion> focus{};
@@ -189,18 +209,32 @@ class BlockSource final : public transfer::Source {
     bool behind{};        ///< More than kBacklog of `unseen` and `resting` could go.
 
     void forget(std::uint64_t change) { unseen.erase(change), resting.erase(change), changed.erase(change); }
+    bool has_joined() const { return !joins_from; }
+    /// Whether the cell was looked up for it.
+    bool covers(const LatticeCell& cell) const { return !joins_from || cell < *joins_from; }
   };
-  /// A place in a piece.
+  /// A place in a piece, in the state that is sent.
   struct Part {
     LatticeCell cell{};
-    bool coarse{};           ///< In voxels of 0.4 m.
-    std::uint64_t change{};  ///< Of the state that was sent.
+    bool coarse{};  ///< In voxels of 0.4 m.
+    std::uint64_t known{}, occupied{};
+    std::uint64_t change{};  ///< Of that state.
+    bool based{};            ///< What changed goes.
+  };
+  /// A piece that is encoded.
+  struct Pending {
+    std::uint64_t number{};
+    std::vector<Part> parts{};
+    std::uint16_t to{};  ///< Its bases are those of these peers.
+    std::size_t max_bytes{};
+    std::optional<perception::PackedPiece> packed{};  ///< Nothing: not yet.
   };
   /// What the blocks of a piece are expected to take.
   struct Bytes {
     static constexpr double kHeader = 32.0;
     double coarse{}, changes{}, complete{};
     double sum() const { return kHeader + coarse + changes + complete; }
+    void add(bool is_coarse, bool based) { (is_coarse ? coarse : based ? changes : complete) += 1.0; }
   };
   SubmapPlace place_of(std::uint32_t submap) const;
   LatticeCell cell_of(const Ref& ref) const;
@@ -210,14 +244,25 @@ class BlockSource final : public transfer::Source {
   BlockVotes votes_of(const LatticeCell& cell, const Place& place,
                       std::optional<std::uint32_t> without = {}) const;
   /// Notes that a peer lacks the present state of a place. Returns whether it lacks voxels of 0.4 m.
-  static bool add_missing(BlockRecipient& peer, const LatticeCell& cell, const Place& place);
-  /// Notes that the present state of a place went to these peers.
-  void note_sent(const LatticeCell& cell, Place& place, std::uint16_t to);
+  static bool add_missing(BlockRecipient& peer, Cell& cell);
+  /// Notes that a peer has the present state of a place if no other submaps than these saw it.
+  static void note_had(BlockRecipient& peer, Cell& cell, const std::set<std::uint32_t>& submaps);
+  /// Looks up the next cells for a peer that joins.
+  void continue_join(BlockRecipient& peer);
+  /// The bits of those of these peers that have joined.
+  std::uint16_t bits_of(std::span<const transfer::PeerId> peers) const;
+  /// Chooses the next piece, and has it encoded. False: there is none now.
+  bool begin_piece(std::span<const transfer::PeerId> peers, std::size_t max_bytes, Time now);
+  /// Notes that these parts are on their way to these peers.
+  void note_parts(const std::vector<Part>& parts, std::uint16_t to);
+  /// Notes that a state of a place went to these peers. It may be older than the present one.
+  void note_sent(Cell& cell, const Part& part, std::uint16_t to);
   /// The same in voxels of 0.4 m.
-  void note_coarse(const LatticeCell& cell, Place& place, std::uint16_t to);
+  void note_coarse(Cell& cell, const Part& part, std::uint16_t to);
   /// Takes the length of a piece into the mean lengths of blocks.
-  void learn(const std::vector<Part>& sent, std::uint16_t to, std::size_t bytes);
-  Bytes bytes_of(const std::vector<Part>& parts, std::uint16_t to) const;
+  void learn(const std::vector<Part>& sent, std::size_t bytes);
+  /// What so many blocks are expected to take.
+  Bytes expected(Bytes counts) const;
   enum class Due { no, yes, late };
   struct Waits {
     Duration rest{}, flush{}, latest{};
@@ -243,8 +288,8 @@ class BlockSource final : public transfer::Source {
   static void begin_focus(BlockRecipient& peer);
   void add_unseen(const BlockRecipient& peer, Duration wait, Time now, Choice& out) const;
   /// Adds at most `most` of these places that are due; returns how many.
-  std::size_t add_held(const BlockRecipient& peer, const std::map<std::uint64_t, LatticeCell>& places,
-                       std::size_t most, Time now, Choice& out) const;
+  std::size_t add_held(const BlockRecipient& peer, const Lacked& places, std::size_t most, Time now,
+                       Choice& out) const;
   void add_resting(const BlockRecipient& peer, Time now, Choice& out) const;
   void add_changed(BlockRecipient& peer, Time now, Choice& out);
   /// Erases a block; what was seen stays as it is.
@@ -260,11 +305,15 @@ class BlockSource final : public transfer::Source {
   std::map<std::uint32_t, SubmapPlace> names_{};
   std::map<std::uint64_t, std::uint32_t> first_{};  ///< The first submap of each group.
   std::map<Ref, Block> blocks_{};
-  std::map<LatticeCell, Place> cells_{};
+  Cells cells_{};
   std::map<std::uint32_t, std::size_t> pruned_{};
   std::map<transfer::PeerId, BlockRecipient> peers_{};
   std::map<std::uint64_t, std::vector<Part>> flights_{};  ///< Pieces on their way, by token.
   std::vector<BlockRegion> focus_{};
+  std::optional<Pending> pending_{};
+  std::uint64_t pieces_begun_{};
+  Executor* strand_{};  ///< Null: pieces are encoded by next().
+  Task ready_{};
   Time now_{};
   /// Of a block in a piece, in the mean: complete, what changed, and in voxels of 0.4 m.
   double complete_bytes_{4.0}, change_bytes_{2.0}, coarse_bytes_{1.0};

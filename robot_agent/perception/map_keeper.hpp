@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/transfer/source.hpp"
@@ -39,6 +40,8 @@ class MapKeeper {
   /// `disk` null: the map ends with this process.
   explicit MapKeeper(MapKeeperParams params, std::unique_ptr<MapDisk> disk = nullptr);
 
+  /// Encodes pieces by `compute` of the command strand; see BlockSource::encode_on().
+  void encode_on(Executor& strand, Task ready) { blocks_.encode_on(strand, std::move(ready)); }
   /// Takes the map from the disk, before anything else; returns what could not be used, without its content.
   LoadedMap load();
 

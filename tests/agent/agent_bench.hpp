@@ -63,12 +63,17 @@ class AgentBench {
     }
   };
 
+  /// Puts something between the agent and its runtime.
+  using Wrap = std::function<std::unique_ptr<Runtime>(std::unique_ptr<Runtime>)>;
+
   explicit AgentBench(AgentParams params = {}, std::uint64_t seed = 1,
-                      const std::string& tree = source_folder() + "/config/trees/robot.xml")
+                      const std::string& tree = source_folder() + "/config/trees/robot.xml",
+                      const Wrap& wrap = {})
       : params_(std::move(params)), scheduler_(seed), network_(scheduler_, {seed}) {
     params_.tree = tree;
     if (!params_.library) params_.library = nav::shared_library;
     machine_ = scheduler_.machine("r1", 77777s);
+    if (wrap) machine_ = wrap(std::move(machine_));
     world_ = scheduler_.machine("world", 3s);
     strand_ = world_->strand("bench");
     driver_wire_ = network_.join(100, "driver");

@@ -484,7 +484,7 @@ class CoarseFirstTest : public BlockSourceTest {
     many.settled(token);
   }
 
-  BlockSource many{{.robot = "r1", .start = 5, .max_blocks = kBlocks}};
+  BlockSource many{{.robot = "r1", .start = 5, .max_blocks = kBlocks, .slice = kBlocks}};
 };
 
 TEST_F(CoarseFirstTest, AStationThatLacksMuchGetsLargeVoxelsOfAllFirst) {

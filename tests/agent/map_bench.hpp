@@ -26,8 +26,13 @@ struct MapBench {
     std::size_t received{};  ///< Blocks, with repeats.
   };
 
-  explicit MapBench(std::string robot = "r1", MapDiskParams disk_params = {}, BlockSourceParams blocks = {})
-      : disk_params_(std::move(disk_params)), block_params_(std::move(blocks)), name(std::move(robot)) {
+  /// `computes`: pieces are encoded by `compute`, as on a robot.
+  explicit MapBench(std::string robot = "r1", MapDiskParams disk_params = {}, BlockSourceParams blocks = {},
+                    bool computes = false)
+      : disk_params_(std::move(disk_params)),
+        block_params_(std::move(blocks)),
+        computes_(computes),
+        name(std::move(robot)) {
     restart();
   }
   ~MapBench() {
@@ -49,6 +54,7 @@ struct MapBench {
                                     failing = fails;
                                     reported = text;
                                   }));
+    if (computes_) keeper->encode_on(*strand, [] {});
     loaded = keeper->load();
     sender = std::make_unique<transfer::Sender>(
         transfer::SenderParams{.session = static_cast<std::uint32_t>(seed)});
@@ -111,6 +117,7 @@ struct MapBench {
 
   MapDiskParams disk_params_;
   BlockSourceParams block_params_;
+  bool computes_;
   std::string name;
   VirtualScheduler scheduler{1};
   std::unique_ptr<Runtime> machine{scheduler.machine("r1", 5s)};

@@ -40,8 +40,12 @@ struct DiskStation {
 
 class Chaos : public MapBench {
  public:
-  /// Large voxels go first as soon as a station lacks anything, or a piece.
-  explicit Chaos(std::uint64_t number) : MapBench("r1", {}, {.coarse_pieces = number % 2}), random(number) {}
+  /// Large voxels go first as soon as a station lacks anything, or a piece; pieces are encoded by `compute`
+  /// or at once; stations join in slices of a few blocks or at once.
+  explicit Chaos(std::uint64_t number)
+      : MapBench("r1", {}, {.coarse_pieces = number % 2, .slice = number % 3 == 0 ? 1000U : 7U},
+                 number % 4 < 2),
+        random(number) {}
 
   /// Lets time pass; pieces and acknowledgements of `base` are lost, late, twice or in another order. `other`
   /// loses few.
