@@ -174,7 +174,9 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   handlers.rival = [with_command](const wire::ParticipantId& writer, Time received) {
     with_command([&](CommandComponent& component) { component.rival(writer, received); });
   };
-  handlers.fault = [&e, &strand](const InputFault& fault) { e.inputs->report(fault, strand.now()); };
+  handlers.fault = [&e, &strand](const InputFault& fault) {
+    if (e.command_component) e.inputs->report(fault, strand.now());
+  };
   e.inputs = std::make_unique<InputFaults>(
       params.name, InputFaults::Outputs{[notifier = e.notifier.get(),
                                          log = Log(params.log, params.name, &strand)](const Notice& notice) {
