@@ -6,6 +6,7 @@
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "adit/robot.h"
+#include "adit/team.h"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/wire/component_io.hpp"
 #include "core/wire/memory/simulated_network.hpp"
