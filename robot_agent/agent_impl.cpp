@@ -103,7 +103,7 @@ UnitParams Agent::Impl::sensors_unit() {
         [&inputs = *context->inputs, &strand](const InputFault& fault) {
           inputs.report(fault, strand.now());
         },
-        params.perception == PerceptionLevel::off ? 0 : ++context->odometries);
+        context->static_frames->all(), params.perception == PerceptionLevel::off ? 0 : ++context->odometries);
   };
   unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
     auto readers = read_sensors(
@@ -112,7 +112,7 @@ UnitParams Agent::Impl::sensors_unit() {
           const auto taken = slot.lock();
           return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
         },
-        context->odometry_source);
+        context->odometry_source, context->static_frames);
     if (!readers) return readers.error();
     return std::shared_ptr<void>(std::make_shared<SensorReaders>(std::move(*readers)));
   };

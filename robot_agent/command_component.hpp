@@ -53,6 +53,7 @@ struct Agent::Context {
   std::unique_ptr<Notifier> notifier{};  ///< From any thread.
   std::unique_ptr<RadioEdge> radio{};
   std::unique_ptr<InputFaults> inputs{};  ///< From any thread.
+  std::shared_ptr<StaticFrames> static_frames{std::make_shared<StaticFrames>()};
   std::shared_ptr<OneSource> odometry_source{std::make_shared<OneSource>()};
   std::unique_ptr<Driver> driver{};
   PeerTable peers;

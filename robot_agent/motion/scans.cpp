@@ -22,13 +22,14 @@ constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the l
 constexpr std::uint64_t kImuWait = 60'000'000;       // ns; a longer gap is bridged by the driver's odometry
 constexpr double kJump = 1.0;                        // m between two samples: another odometry frame
 constexpr int kMaxNotDeskewed = 5;                   // consecutive scans before the operator is warned
+constexpr Duration kFramesCome = 1s;                 // for the frames of /tf_static after the first scan
 constexpr Duration kOdometryHeard = 200ms;           // two samples of the slowest odometry
 constexpr double kClocksApart = 0.5;                 // s; longer than any delay of a scan in its driver
 
 }  // namespace
 
 Scans::Scans(Executor& strand, Log log, const Platform& platform, const ScanService& output, Report report,
-             std::uint32_t instance)
+             const std::vector<StaticFrames::Frame>& frames, std::uint32_t instance)
     : Component("sensors", strand, std::move(log), {.beat = 100ms}),
       lidars_(platform.all_lidars()),
       output_(output),
@@ -38,6 +39,9 @@ Scans::Scans(Executor& strand, Log log, const Platform& platform, const ScanServ
       instance_(instance),
       waiting_(lidars_.size()) {
   input_.mark_isolated(instance_ > 0);
+  // What cannot be used was reported when it came.
+  for (const StaticFrames::Frame& frame : frames)
+    (void)input_.add_transform(frame.parent, frame.child, frame.T_parent_child);
 }
 
 void Scans::take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received) {
@@ -206,6 +210,11 @@ void Scans::judge_clock(const perception::Sweep& sweep, bool deskewed) {
 void Scans::refuse(const std::string& topic, const Error& error) {
   // A message that came late is normal; only the newest counts.
   if (error.reason == Reason::sample_stale) return;
+  // After a start the first scans may come before the frames.
+  if (error.reason == Reason::frame_unknown) {
+    if (!frame_unknown_) frame_unknown_ = now();
+    if (now() - *frame_unknown_ < kFramesCome) return;
+  }
   report_({topic, "sensor_refused", Severity::error, error});
 }
 

@@ -15,6 +15,7 @@
 #include "robot_agent/motion/input_faults.hpp"
 #include "robot_agent/motion/pose_correction.hpp"
 #include "robot_agent/motion/pose_history.hpp"
+#include "robot_agent/motion/static_frames.hpp"
 
 namespace sensor_msgs::msg {
 class Imu;
@@ -54,8 +55,9 @@ class Scans : public Component {
 
   /// `instance`: number of this instance since the start of the agent, from 1; 0: without odometry of its
   /// own.
+  /// `frames`: those that came before.
   Scans(Executor& strand, Log log, const Platform& platform, const ScanService& output, Report report,
-        std::uint32_t instance = 0);
+        const std::vector<StaticFrames::Frame>& frames, std::uint32_t instance = 0);
 
   /// On its strand; nothing when it does not run. `lidar`: index of Platform::all_lidars().
   void take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received);
@@ -96,6 +98,7 @@ class Scans : public Component {
   bool in_g_reported_{false};
   int not_deskewed_{0};  ///< Consecutive scans that were not corrected for motion, or of another clock.
   Time odometry_heard_{};
+  std::optional<Time> frame_unknown_{};  ///< When the frame of a message was unknown first.
 };
 
 /// The points of a cloud that has float32 x, y and z, in its frame. `duration`: of a sweep, s.

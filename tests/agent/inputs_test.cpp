@@ -203,6 +203,23 @@ TEST_F(Inputs, ASecondSourceOfOdometryIsLeftOutAndTold) {
   EXPECT_GT(bench->command.vx, 0.2);
 }
 
+// A driver sends them once, and a component that is made again has none of its own.
+TEST_F(Inputs, FixedFramesOutliveTheSensorsComponent) {
+  begin();
+  bench->send_frame("velodyne", 0.5);
+  bench->lidar_frame = "velodyne";
+  bench->run(1s);
+  for (int restarts = 0; restarts < 2; ++restarts) {
+    bench->stream(*op1, 0.0, 300ms);
+    ASSERT_EQ(bench->ask(*op1, radio::CMD_MODE, "smart_joystick"), Reason::none) << restarts;
+    bench->stream(*op1, 0.5, 2500ms);
+    EXPECT_GT(bench->command.vx, 0.1) << restarts;
+    ASSERT_EQ(bench->ask(*op1, radio::CMD_RESTART, "sensors"), Reason::none);
+    bench->run(3s);
+  }
+  EXPECT_THAT(op1->notice_codes(), Not(Contains("sensor_refused")));
+}
+
 TEST_F(Inputs, AChargeInPercentIsUnknown) {
   AgentParams params{};
   begin(std::move(params));

@@ -26,7 +26,11 @@ class FieldDriver : public Programs {
   }
   static std::string folder() { return source_folder() + "/tests/field/live/"; }
   bool soon(std::vector<std::string> words) {
-    return eventually([&] { return op("op1", words).exit_code == 0; });
+    return eventually([&] {
+      const auto finished = op("op1", words);
+      said_ = finished.out + finished.err;
+      return finished.exit_code == 0;
+    });
   }
   double x() {
     const auto pose = listed("op1", "h1").value("pose", nlohmann::json::array());
@@ -43,6 +47,7 @@ class FieldDriver : public Programs {
     EXPECT_EQ(checked.exit_code, 1);
     return checked.out + checked.err;
   }
+  std::string said_{};  ///< What the last command printed.
 };
 
 /// What a driver sends that is right: the robot drives by it, and nothing is reported.
@@ -53,6 +58,8 @@ struct GoodRow {
   bool quiet{true};  ///< Not a word; otherwise the frame is unknown until it is sent.
 };
 
+void PrintTo(const GoodRow& row, std::ostream* out) { *out << row.name; }
+
 class FieldGood : public FieldDriver, public testing::WithParamInterface<GoodRow> {};
 
 TEST_P(FieldGood, IsDrivenByWithoutAWord) {
@@ -60,7 +67,7 @@ TEST_P(FieldGood, IsDrivenByWithoutAWord) {
   if (GetParam().late) pass(Seconds(1));
   Process h1 = robot("h1");
   ASSERT_TRUE(soon({"take", "h1"}));
-  ASSERT_TRUE(soon({"goto", "h1", "2", "0"})) << h1.err();
+  ASSERT_TRUE(soon({"goto", "h1", "2", "0"})) << said_ << op("op1", {"health", "h1"}).out << h1.err();
   EXPECT_TRUE(eventually([&] { return x() > 0.5; }, Seconds(20))) << x() << "\n" << h1.err();
   EXPECT_THAT(h1.err(), Not(HasSubstr("not_deskewed")));
   if (!GetParam().quiet) return;
@@ -86,6 +93,8 @@ struct BadRow {
   const char* code;
   const char* text;
 };
+
+void PrintTo(const BadRow& row, std::ostream* out) { *out << row.name; }
 
 class FieldBad : public FieldDriver, public testing::WithParamInterface<BadRow> {};
 

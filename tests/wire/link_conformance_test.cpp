@@ -210,19 +210,6 @@ TYPED_TEST(LinkConformance, OfStatesTheNewestOfEachKeyIsSent) {
   EXPECT_LT(keys.size(), 6U);
 }
 
-// The guard takes announcements only whole, so none may be split.
-TEST(LiveFrames, ParticipantsMeetOverFramesShorterThanAnAnnouncement) {
-  LiveNet net({{.bandwidth = 1e6, .latency = 0.0, .frame = 200}});
-  const auto strand = net.strand("test");
-  const auto a = net.join("a"), b = net.join("b");
-  const auto writer = a->make_writer(topics::kNotification, "a_partition_of_a_robot").value();
-  const auto reader =
-      b->make_reader(topics::kNotification, "a_partition_of_a_robot", *strand, [](auto, const SampleInfo&) {
-         return true;
-       }).value();
-  EXPECT_TRUE(net.until([&] { return writer->matched() == 1; }));
-}
-
 TEST(LiveRange, PeerBelievedOutOfRangeReceivesNothingUntilItIsNear) {
   LiveNet net({{.bandwidth = 1e6, .latency = 0.0, .range = 50.0, .fading = 2.0}});
   const auto strand = net.strand("test");

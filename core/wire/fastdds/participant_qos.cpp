@@ -31,9 +31,6 @@ constexpr std::uint32_t kSendBuffer = 212992;       // Bytes, the default of Lin
 /// heartbeat, 32 bytes, which hardly ever goes with a fragment. With 20 of these, an endpoint announcement
 /// fits one frame of 500 bytes.
 constexpr std::uint32_t kNeverSent = 60 + 20;
-/// The guard takes announcements only whole: a link with shorter frames, or a participant with several
-/// addresses, has them as they are.
-constexpr std::uint32_t kAnnouncement = 500, kFurtherAddress = 24;
 constexpr const char* kRtpsMulticast = "239.255.0.1";  // RTPS multicast group.
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
@@ -126,10 +123,8 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   udp->maxMessageSize = params.large_samples ? kLoopbackDatagram : WireCost::kFrame + kNeverSent;
   if (params.large_samples) udp->receiveBufferSize = kScanBuffer;
   if (params.link) {
-    const auto addresses = static_cast<std::uint32_t>(udp->interfaceWhiteList.size());
-    const std::uint32_t frame =
-        std::max(params.link->frame_bytes(), kAnnouncement + kFurtherAddress * (addresses - 1));
-    udp->maxMessageSize = std::min(udp->maxMessageSize, frame - WireCost::kUdpAndIp + kNeverSent);
+    udp->maxMessageSize =
+        std::min(udp->maxMessageSize, params.link->frame_bytes() - WireCost::kUdpAndIp + kNeverSent);
     const Budget budget;
     add_flow(kBulkFlow, budget.share[5], *params.link, qos);
     add_flow(kVideoFlow, budget.share[6], *params.link, qos);
