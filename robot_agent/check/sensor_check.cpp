@@ -107,10 +107,8 @@ void SensorCheck::take(const nav_msgs::msg::Odometry& odometry, Time received) {
 }
 
 void SensorCheck::take(const tf2_msgs::msg::TFMessage& transforms, Time) {
-  for (const auto& each : transforms.transforms())
-    (void)input_.add_transform(
-        each.header().frame_id(), each.child_frame_id(),
-        {vector_of(each.transform().translation()), quaternion_of(each.transform().rotation())});
+  for (const StaticFrames::Frame& frame : frames_of(transforms))
+    (void)input_.add_transform(frame.parent, frame.child, frame.T_parent_child);
 }
 
 void SensorCheck::take(const sensor_msgs::msg::BatteryState& battery, const wire::ParticipantId& sender) {

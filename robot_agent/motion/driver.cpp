@@ -20,6 +20,11 @@ namespace {
 // Maps index their cells with 32 bits, so positions must be nearer than 1000 km.
 constexpr double kFarthest = 1e6;
 
+bool is_finite(const Twist2& twist) {
+  return std::isfinite(twist.vx) && std::isfinite(twist.vy) && std::isfinite(twist.wz) &&
+         std::isfinite(twist.vz);
+}
+
 /// Why a sample of the odometry cannot be used; empty: it can.
 std::string unusable(const Pose3& pose, const Twist2& twist) {
   char text[160] = "";
@@ -31,8 +36,7 @@ std::string unusable(const Pose3& pose, const Twist2& twist) {
   else if (!is_rotation(q))
     std::snprintf(text, sizeof text, "its orientation %.4g %.4g %.4g %.4g is no quaternion", q.x(), q.y(),
                   q.z(), q.w());
-  else if (!std::isfinite(twist.vx) || !std::isfinite(twist.vy) || !std::isfinite(twist.wz) ||
-           !std::isfinite(twist.vz))
+  else if (!is_finite(twist))
     std::snprintf(text, sizeof text, "its twist is no number");
   return text;
 }
@@ -44,6 +48,10 @@ InputFault refused(const wire::TopicInfo& topic, Reason reason, const std::strin
 }  // namespace
 
 struct Driver::Endpoints {
+  static Twist2 twist_of(const geometry_msgs::msg::Twist& t) {
+    return {t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()};
+  }
+
   wire::ComponentIo io;
   Handlers handlers;
   std::shared_ptr<OneSource> source;
@@ -58,8 +66,7 @@ struct Driver::Endpoints {
     if (use == OneSource::Use::besides) handlers.fault(two_sources("odom", *source));
     const auto& p = o.pose().pose().position();
     Pose3 pose{{p.x(), p.y(), p.z()}, quaternion_of(o.pose().pose().orientation())};
-    const auto& v = o.twist().twist();
-    const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z(), v.linear().z()};
+    const Twist2 twist = twist_of(o.twist().twist());
     // Left out, it counts as silence: the robot stops if it continues.
     if (const std::string why = unusable(pose, twist); !why.empty())
       return handlers.fault(
@@ -76,9 +83,8 @@ struct Driver::Endpoints {
     handlers.fault(fault);
   }
   void take(const geometry_msgs::msg::Twist& t, const wire::SampleInfo& info) {
-    const Twist2 velocity{t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()};
-    if (!std::isfinite(velocity.vx) || !std::isfinite(velocity.vy) || !std::isfinite(velocity.wz) ||
-        !std::isfinite(velocity.vz))
+    const Twist2 velocity = twist_of(t);
+    if (!is_finite(velocity))
       return handlers.fault(refused(wire::topics::kExternalCmdVel, Reason::malformed,
                                     "a velocity on /external/cmd_vel is no number and is left out"));
     handlers.external(velocity, info.received);

@@ -9,6 +9,7 @@
 #include "nav_msgs/msg/Odometry.h"
 #include "perception/input/point_layout.hpp"
 #include "robot_agent/motion/sensor_messages.hpp"
+#include "robot_agent/motion/sensor_readers.hpp"
 #include "sensor_msgs/msg/Imu.h"
 #include "sensor_msgs/msg/LaserScan.h"
 #include "sensor_msgs/msg/PointCloud2.h"
@@ -108,10 +109,8 @@ void Scans::take(const nav_msgs::msg::Odometry& odometry, Time received) {
 
 void Scans::take(const tf2_msgs::msg::TFMessage& transforms, Time) {
   protect([&] {
-    for (const auto& each : transforms.transforms()) {
-      const auto set = input_.add_transform(
-          each.header().frame_id(), each.child_frame_id(),
-          {vector_of(each.transform().translation()), quaternion_of(each.transform().rotation())});
+    for (const StaticFrames::Frame& frame : frames_of(transforms)) {
+      const auto set = input_.add_transform(frame.parent, frame.child, frame.T_parent_child);
       if (!set) refuse("tf_static", set.error());
     }
   });
