@@ -18,29 +18,15 @@ Priority priority_of(const Notice& notice, const AlertRow* row, const Robot* rob
   return row->priority;
 }
 
-bool over(const Robot& robot, Ends ends) {
-  // It is the concern of the operator who holds it now.
-  if (ends != Ends::seen && !robot.mine && !robot.holder.empty()) return true;
-  switch (ends) {
-    case Ends::seen:
-      return false;
-    case Ends::heard:
-      return !robot.lost;
-    case Ends::stop_cleared:
-      return !robot.stopped;
-    case Ends::goes_on:
-      return robot.reason == Reason::none && robot.goal_state != GoalState::blocked;
-    case Ends::busy:
-      return !robot.mine || robot.goal_state == GoalState::active || is_by_hand(robot.mode) ||
-             robot.exploration.phase == ExplorationPhase::exploring;
-    case Ends::not_asked:
-      return !robot.mine || !robot.locked;
-    case Ends::healthy:
-      return robot.troubles.empty();
-    case Ends::by_hand:
-      return !is_by_hand(robot.mode);
-  }
-  return false;
+/// The place of an alert among those of its priority: that of its row, or of a blocked robot if it has none.
+std::size_t rank_of(const Alert& alert) {
+  const AlertRow* row = alert_row(alert.code);
+  if (!row) row = alert_row("blocked");
+  return static_cast<std::size_t>(row - alert_table().data());
+}
+
+bool names(const Alert& alert, const std::string& robot) {
+  return std::ranges::find(alert.robots, robot) != alert.robots.end();
 }
 
 }  // namespace
@@ -48,15 +34,46 @@ bool over(const Robot& robot, Ends ends) {
 Alert* AlertQueue::find(const std::string& robot, const std::string& code) {
   for (Alert& alert : alerts_) {
     if (alert.code != code) continue;
-    if (robot.empty() ? alert.robots.empty() : std::ranges::count(alert.robots, robot) > 0) return &alert;
+    if (robot.empty() ? alert.robots.empty() : names(alert, robot)) return &alert;
   }
   return nullptr;
 }
 
-void AlertQueue::close(const std::string& robot, const std::string& closing) {
+Alert* AlertQueue::find_from_state(const std::string& robot, Ends ends) {
+  for (Alert& alert : alerts_)
+    if (alert.from_state && alert.ends == ends && alert.robots.size() == 1 && names(alert, robot))
+      return &alert;
+  return nullptr;
+}
+
+bool AlertQueue::covers(const std::string& robot, Ends ends) const {
+  return std::ranges::any_of(alerts_,
+                             [&](const Alert& alert) { return alert.ends <= ends && names(alert, robot); });
+}
+
+bool AlertQueue::is_over(const Alert& alert, const Robot& robot, double now) const {
+  if (alert.ends == Ends::seen) return false;
+  // It is the concern of the operator who holds it now.
+  if (!robot.mine && !robot.holder.empty()) return true;
+  if (alert.ends == Ends::heard) return !robot.lost;
+  // The state may be older than the notification.
+  if (robot.lost || now - robot.age <= alert.last) return false;
+  if (alert.ends == Ends::not_locked) return !robot.mine || !robot.locked;
+  if (!robot.mine) return false;
+  const auto found = conditions_.find({robot.name, alert.ends});
+  if (found == conditions_.end()) return true;
+  const Condition& is = found->second.condition;
+  const bool other = is.reason != alert.reason && is.code != alert.code && alert.reason != Reason::none;
+  return alert.ends == Ends::goes_on && other && now - found->second.since >= kSettles;
+}
+
+void AlertQueue::close(const std::string& robot, const std::string& closing, double now) {
   for (Alert& alert : alerts_) {
     const AlertRow* row = alert_row(alert.code);
-    if (row && row->closed_by == closing) std::erase(alert.robots, robot);
+    if (!row || row->closed_by != closing || std::erase(alert.robots, robot) == 0) continue;
+    // The state may be older than this notification.
+    if (const auto known = conditions_.find({robot, alert.ends}); known != conditions_.end())
+      known->second.since = now;
   }
   std::erase_if(alerts_, [&](const Alert& alert) {
     const AlertRow* row = alert_row(alert.code);
@@ -65,13 +82,14 @@ void AlertQueue::close(const std::string& robot, const std::string& closing) {
 }
 
 Priority AlertQueue::add(const Notice& notice, const World& world, double now) {
-  if (notice.mine && !notice.code.empty()) close(notice.robot, notice.code);
+  if (notice.mine && !notice.code.empty()) close(notice.robot, notice.code, now);
   const AlertRow* row = alert_row(notice.code);
   const Priority priority = priority_of(notice, row, world.robot(notice.robot));
   if (priority > Priority::soon) return priority;
   const double at = now - std::max(notice.age, 0.0);
   if (Alert* known = find(notice.robot, notice.code)) {
-    ++known->count;
+    if (!known->from_state) ++known->count;
+    known->from_state = false;
     known->last = std::max(known->last, at);
     known->text = notice.text;
     known->reason = notice.reason;
@@ -84,14 +102,64 @@ Priority AlertQueue::add(const Notice& notice, const World& world, double now) {
           row && !row->part_of.empty() ? find(notice.robot, std::string(row->part_of)) : nullptr;
       covering && std::abs(at - covering->last) <= kTogether)
     return priority;
+  const Ends ends = row ? row->ends : Ends::seen;
+  // The state showed it first: it stays the same alert.
+  if (Alert* shown = ends < Ends::seen ? find_from_state(notice.robot, ends) : nullptr) {
+    shown->code = notice.code;
+    shown->text = notice.text;
+    shown->reason = notice.reason;
+    shown->priority = std::min(shown->priority, priority);
+    shown->last = std::max(shown->last, at);
+    shown->from_state = false;
+    return priority;
+  }
+  insert({.priority = priority,
+          .code = notice.code,
+          .ends = ends,
+          .robots = notice.robot.empty() ? std::vector<std::string>{} : std::vector{notice.robot},
+          .text = notice.text,
+          .reason = notice.reason,
+          .first = at,
+          .last = at});
+  return priority;
+}
+
+void AlertQueue::insert(Alert alert) {
   make_room();
-  Alert alert{next_++, priority, notice.code, {}, notice.text, notice.reason, 1, at, at, false, 0.0};
-  if (!notice.robot.empty()) alert.robots.push_back(notice.robot);
+  alert.id = next_++;
   alerts_.push_back(alert);
-  if (notice.robot.empty()) return priority;
+  if (alert.robots.empty()) return;
   absorb(alert);
   gather(alert);
-  return priority;
+}
+
+void AlertQueue::look(const Robot& robot, const std::string& station, double now) {
+  const std::vector<Condition> conditions = conditions_of(robot, station);
+  for (const Condition& condition : conditions) {
+    Settling& settling = conditions_.try_emplace({robot.name, condition.ends}, condition, now).first->second;
+    if (settling.condition.code != condition.code) settling.since = now;
+    settling.condition = condition;
+  }
+  std::erase_if(conditions_, [&](const auto& entry) {
+    const auto& [name, ends] = entry.first;
+    return name == robot.name && std::ranges::find(conditions, ends, &Condition::ends) == conditions.end();
+  });
+}
+
+void AlertQueue::add_condition(const Robot& robot, const Condition& condition, double since) {
+  const AlertRow* row = alert_row(condition.code);
+  // Some reasons have the name of news; a robot that does not move because of them is more than that.
+  Priority priority = row ? std::min(row->priority, Priority::soon) : Priority::soon;
+  if (row && row->by_hand && !is_by_hand(robot.mode)) priority = Priority::soon;
+  insert({.priority = priority,
+          .code = condition.code,
+          .ends = condition.ends,
+          .from_state = true,
+          .robots = {robot.name},
+          .text = condition.text,
+          .reason = condition.reason,
+          .first = since,
+          .last = since});
 }
 
 void AlertQueue::absorb(const Alert& newest) {
@@ -142,21 +210,23 @@ void AlertQueue::make_room() {
 }
 
 void AlertQueue::update(const World& world, double now) {
-  for (Alert& alert : alerts_) {
-    const AlertRow* row = alert_row(alert.code);
-    if (!row || row->ends == Ends::seen) continue;
-    // The state of the robot may be older than the notification.
-    std::erase_if(alert.robots, [&](const std::string& name) {
-      const Robot* robot = world.robot(name);
-      const bool newer = robot && (row->ends == Ends::heard || now - robot->age > alert.last);
-      return newer && over(*robot, row->ends);
-    });
-  }
-  std::erase_if(alerts_, [&](const Alert& alert) {
-    const AlertRow* row = alert_row(alert.code);
-    const bool stays = !row || row->ends == Ends::seen;
-    return stays ? alert.seen : alert.robots.empty();
+  std::erase_if(conditions_, [&](const auto& entry) { return !world.robot(entry.first.first); });
+  for (const Robot& robot : world.robots) look(robot, world.station, now);
+  for (Alert& alert : alerts_)
+    if (alert.ends != Ends::seen)
+      std::erase_if(alert.robots, [&](const std::string& name) {
+        const Robot* robot = world.robot(name);
+        return robot && is_over(alert, *robot, now);
+      });
+  std::erase_if(alerts_, [](const Alert& alert) {
+    return alert.ends == Ends::seen ? alert.seen : alert.robots.empty();
   });
+  for (const Robot& robot : world.robots)
+    for (const Condition& condition : conditions_of(robot, world.station)) {
+      const double since = conditions_.at({robot.name, condition.ends}).since;
+      if (now - since >= kSettles && !covers(robot.name, condition.ends))
+        add_condition(robot, condition, since);
+    }
 }
 
 void AlertQueue::see(std::uint64_t id) {
@@ -173,14 +243,9 @@ std::vector<Alert> AlertQueue::shown(double now) const {
   std::vector<Alert> out;
   for (const Alert& alert : alerts_)
     if (now >= alert.hidden_until) out.push_back(alert);
-  std::ranges::stable_sort(out, {},
-                           [](const Alert& alert) { return std::tuple(alert.priority, alert.first); });
+  std::ranges::stable_sort(
+      out, {}, [](const Alert& alert) { return std::tuple(alert.priority, rank_of(alert), alert.first); });
   return out;
-}
-
-bool AlertQueue::concerns(const std::string& robot) const {
-  return std::ranges::any_of(alerts_,
-                             [&](const Alert& alert) { return std::ranges::count(alert.robots, robot) > 0; });
 }
 
 }  // namespace adit::station

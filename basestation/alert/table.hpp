@@ -14,16 +14,16 @@ enum class Priority : std::uint8_t {
   log,   ///< The rest.
 };
 
-/// The state that ends an alert, beside a notification that closes it.
+/// The state of the robot with which an alert ends, beside a notification that closes it. The most dangerous
+/// condition is first.
 enum class Ends : std::uint8_t {
-  seen,          ///< The state of the robot does not show it: when the operator has seen it.
   heard,         ///< The robot is heard.
-  stop_cleared,  ///< No software stop is set.
-  goes_on,       ///< The robot may move, or its goal is no longer the one that is blocked.
-  busy,          ///< The robot has something to do, or another holder.
-  not_asked,     ///< The robot is not locked by this operator any more.
+  stop_cleared,  ///< No software stop of another station is set.
+  goes_on,       ///< The robot may move, has nothing to do, or does not move for another reason.
   healthy,       ///< No component of the robot is in trouble.
-  by_hand,       ///< The robot is not driven by hand.
+  understood,    ///< What its driver and its radio bring can be used.
+  not_locked,    ///< The robot is not locked any more.
+  seen,          ///< The state of the robot does not show it: when the operator has seen it.
 };
 
 /// The meaning of a notification code for an operator.
@@ -38,7 +38,8 @@ struct AlertRow {
   std::string_view part_of{};
 };
 
-/// One row for each code of docs/operators.md.
+/// One row for each code of docs/operators.md. Within a priority, the rows are in the order of what the robot
+/// risks: motion or control, then its place, then its task, then things that can wait.
 std::span<const AlertRow> alert_table();
 /// The row of that code; null for a code of another version.
 const AlertRow* alert_row(std::string_view code);

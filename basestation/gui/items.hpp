@@ -5,13 +5,16 @@
 
 namespace adit::gui {
 
-/// The item of that name at or below `top`; delegates have no parent object but a parent item.
+/// The item of that name below `top`, of several one that is shown if there is any; delegates have no parent
+/// object but a parent item.
 inline QQuickItem* item_below(QQuickItem* top, const QString& name) {
+  QQuickItem* hidden = nullptr;
   for (QQuickItem* child : top->childItems()) {
-    if (child->objectName() == name) return child;
-    if (QQuickItem* found = item_below(child, name)) return found;
+    QQuickItem* found = child->objectName() == name ? child : item_below(child, name);
+    if (found && found->isVisible()) return found;
+    if (!hidden) hidden = found;
   }
-  return nullptr;
+  return hidden;
 }
 
 /// The item of that name in the window; null: there is none now.

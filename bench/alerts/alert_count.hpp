@@ -18,6 +18,7 @@ class AlertCount {
   /// The station's world at that time, s. Call it several times a second.
   void look(const station::World& world, double now);
 
+  const station::AlertQueue& queue() const { return queue_; }
   int urgent() const { return urgent_; }  ///< Priority `act`.
   int soon() const { return soon_; }
   const std::map<std::string, int>& by_code() const { return by_code_; }

@@ -9,50 +9,15 @@
 #include <mutex>
 #include <thread>
 
-#include "basestation/station/station.hpp"
-#include "bench/alerts/alert_count.hpp"
-#include "sim/rehearsal/rehearsal.hpp"
+#include "basestation/model/text.hpp"
+#include "bench/alerts/judged_run.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
 
 namespace {
 
 using namespace adit;
 
-/// One operator in one run.
-struct Sample {
-  std::uint64_t seed{};
-  std::string station{};
-  bench::AlertCount alerts{};
-  double minutes{};
-  std::size_t faults{};
-  bool drives{};  ///< He holds a robot at some time.
-};
-
-Result<std::vector<Sample>> run(const sim::Scenario& scenario, const std::shared_ptr<const sim::World>& world,
-                                std::uint64_t seed) {
-  std::map<std::string, Sample> samples;
-  sim::RunParams params;
-  params.seed = seed;
-  params.workers = 1;
-  params.make_agent = *sim::make_agent_factory("");
-  params.on_station = [&](Duration now, const station::Station& station) {
-    const station::World seen = station.world();
-    Sample& sample = samples[seen.station];
-    sample.station = seen.station;
-    sample.drives = sample.drives || std::ranges::any_of(seen.robots, &station::Robot::mine);
-    sample.alerts.look(seen, seconds(now));
-  };
-  auto outcome = sim::rehearse(scenario, world, params);
-  if (!outcome) return outcome.error();
-  std::vector<Sample> out;
-  for (auto& [name, sample] : samples) {
-    sample.seed = seed;
-    sample.minutes = outcome->report.virtual_s / 60.0;
-    sample.faults = outcome->report.fault_count();
-    out.push_back(std::move(sample));
-  }
-  return out;
-}
+using Sample = bench::JudgedOperator;
 
 void print(const std::string& name, const std::vector<Sample>& samples, bool all_calls) {
   int urgent = 0, soon = 0;
@@ -82,6 +47,23 @@ void print(const std::string& name, const std::vector<Sample>& samples, bool all
   for (const auto& [count, code] : codes)
     line += fmt::format("{}{} {}", line.empty() ? "" : ", ", -count, code);
   fmt::print("    {}\n", line.empty() ? "none" : line);
+  bench::AlertJudge::Figures all;
+  for (const Sample& sample : samples) {
+    const bench::AlertJudge::Figures& one = sample.judge->figures();
+    all.judged += one.judged;
+    all.wrong += one.wrong;
+    all.other += one.other;
+    all.losses += one.losses;
+    all.missed += one.missed;
+    all.silent_stands += one.silent_stands;
+    all.slowest = std::max(all.slowest, one.slowest);
+    for (const std::string& complaint : sample.judge->complaints())
+      fmt::print("    seed {} {}: {}\n", sample.seed, sample.station, complaint);
+  }
+  fmt::print(
+      "    judged by the truth: {} of {} alerts false ({} of what it does not know), {} of {} losses missed, "
+      "shown within {:.1f} s, {} silent stands\n",
+      all.wrong, all.judged, all.other, all.missed, all.losses, all.slowest, all.silent_stands);
 }
 
 }  // namespace
@@ -117,7 +99,7 @@ int main(int argc, char** argv) {
     std::atomic<int> next{1};
     const auto work = [&] {
       for (int seed = next++; seed <= seeds; seed = next++) {
-        auto result = run(*scenario, *world, static_cast<std::uint64_t>(seed));
+        auto result = bench::judged_run(*scenario, *world, static_cast<std::uint64_t>(seed));
         const std::lock_guard guard(mutex);
         if (!result) {
           fmt::print(stderr, "{}: {}\n", file, result.error().text);

@@ -23,7 +23,7 @@ const std::set<QString> kLow{
     "commandRun",   "commandClose",    "commandField",  "proposal",      "cure",
     "closeDetails", "fitAll",          "solidToggle",   "cutToggle",     "areaToggle",
     "zoomIn",       "zoomOut",         "logWarnings",   "logSelected",   "logExport",
-    "logTextInput", "receptionToggle", "hearingToggle"};
+    "logTextInput", "receptionToggle", "hearingToggle", "see",           "later"};
 /// Texts that may be cut off: they are whole in another place, which is beside them.
 const std::map<QString, QString> kCut{{"budget", "the command net, with all that was not sent"}};
 

@@ -17,15 +17,16 @@ class AttentionWindow : public Window {
     show(ten_robots());
     settle();
   }
-  const Need& need_of(const std::string& robot) {
+  /// The first row of that robot, or the one in which somebody asks for it.
+  const Need& need_of(const std::string& robot, bool asked = false) {
     for (const Need& need : control.attention()->needs())
-      if (need.robots == std::vector{robot}) return need;
+      if (need.robots == std::vector{robot} && (!asked || !need.grant_label.empty())) return need;
     ADD_FAILURE() << robot;
     static const Need none{};
     return none;
   }
-  QString item_of(const QString& part, const std::string& robot) {
-    return part + "_" + QString::fromStdString(need_of(robot).id);
+  QString item_of(const QString& part, const std::string& robot, bool asked = false) {
+    return part + "_" + QString::fromStdString(need_of(robot, asked).id);
   }
   std::uint64_t id{100};
 };
@@ -69,7 +70,7 @@ TEST_F(AttentionWindow, AGrantIsHeldAndATapIsNotEnough) {
   settle_layout();
   control.attention()->set_open(true);
   settle_layout();
-  const QPoint at = middle(item_of("grant", "r4"));
+  const QPoint at = middle(item_of("grant", "r4", true));
   touch(at);
   EXPECT_TRUE(sink.lines.empty());
   finger_down(at);

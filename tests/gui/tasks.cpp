@@ -42,6 +42,7 @@ TaskResult blocked_and_why() {
 
 TaskResult unblock() {
   TaskWindow task("see who is blocked, understand, send it elsewhere", 2, 10.0);
+  task.quiet_but("r4");
   task.say("r4", "blocked", "every path is blocked");
   task.think();
   task.tap("show_" + task.row_of("r4"));
@@ -52,6 +53,7 @@ TaskResult unblock() {
 
 TaskResult grant() {
   TaskWindow task("grant a robot to the operator who asks", 1);
+  task.quiet_but("none");
   task.say("r4", "asked", "op2 asked for r4");
   task.think();
   const QString button = "grant_" + task.row_of("r4");

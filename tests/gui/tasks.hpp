@@ -78,6 +78,19 @@ class TaskWindow : public Window {
       if (next.name == robot) how(next);
     show(world);
   }
+  /// Nothing is wrong with the robots but this one.
+  void quiet_but(const std::string& robot) {
+    station::World world = control.world();
+    for (station::Robot& other : world.robots) {
+      if (other.name == robot) continue;
+      other.stopped = false;
+      other.stops.clear();
+      other.troubles.clear();
+      other.reason = Reason::none;
+      other.goal_state = contract::GoalState::none;
+    }
+    show(world);
+  }
   bool sent(const std::string& line) const { return sink.lines == std::vector{line}; }
   bool last_starts(const std::string& text) const {
     return !sink.lines.empty() && sink.lines.back().starts_with(text);

@@ -35,7 +35,8 @@ class FakeSink : public CommandSink {
 class Window : public Fingers {
  protected:
   Window() {
-    show(ten_robots());
+    // What the state alone shows becomes an alert when it lasts.
+    for (int i = 0; i < 4; ++i) show(ten_robots());
     control.show_map(std::make_shared<station::TileMap>(corridors()));
     open(control);
   }

@@ -101,11 +101,105 @@ class AlertQueueTest : public testing::Test {
 TEST_F(AlertQueueTest, TheMostUrgentAndThenTheOldestComesFirst) {
   say("r1", "blocked");
   now_ += 1;
-  say("r2", "idle");
+  say("r2", "blocked");
   now_ += 1;
   EXPECT_EQ(say("r3", "stopped"), Priority::act);
-  EXPECT_THAT(shown(), ElementsAre("stopped r3", "blocked r1", "idle r2"));
+  EXPECT_THAT(shown(), ElementsAre("stopped r3", "blocked r1", "blocked r2"));
   EXPECT_EQ(say("r1", "arrived"), Priority::log);
+}
+
+TEST_F(AlertQueueTest, WithinAPriorityTheGreatestRiskComesFirst) {
+  say("r1", "explore_ended");
+  say("r2", "blocked");
+  say("r3", "odometry_jumped");
+  say("r4", "store_failing");
+  say("r5", "stopped");
+  say("r4", "rival_writer");
+  EXPECT_THAT(shown(), ElementsAre("rival_writer r4", "stopped r5", "odometry_jumped r3", "blocked r2",
+                                   "explore_ended r1", "store_failing r4"));
+}
+
+TEST_F(AlertQueueTest, ARobotThatHasNothingToDoIsNews) {
+  EXPECT_EQ(say("r1", "idle"), Priority::know);
+  pass(60.0);
+  EXPECT_TRUE(shown().empty());
+}
+
+TEST_F(AlertQueueTest, WhatTheStateShowsNeedsNoNotification) {
+  r(1).lost = true;
+  r(2).stopped = true;
+  r(2).stops = {"op2"};
+  r(3).mode = "hold";
+  r(3).reason = Reason::driver_silent;  // It ended its mode by itself.
+  r(4).troubles = {"planner FAILED"};
+  r(5).troubles = {"inputs up"};
+  pass(0.0);
+  EXPECT_TRUE(shown().empty());
+  pass(AlertQueue::kSettles);
+  EXPECT_THAT(shown(),
+              ElementsAre("stopped r2", "lost r1", "component_failed r4", "driver_silent r3", "inputs r5"));
+  for (int i = 1; i <= 5; ++i) {
+    r(i) = {};
+    r(i).name = "r" + std::to_string(i);
+    r(i).mine = true;
+  }
+  pass(0.1);
+  EXPECT_TRUE(shown().empty());
+}
+
+TEST_F(AlertQueueTest, AShortConditionIsNoAlert) {
+  for (int i = 0; i < 10; ++i) {
+    r(1).reason = i % 2 == 0 ? Reason::terrain_stale : Reason::none;
+    pass(0.4);
+  }
+  EXPECT_TRUE(shown().empty());
+}
+
+TEST_F(AlertQueueTest, WhatTheOperatorDidIsNoAlert) {
+  world_.station = "op1";
+  r(1).stopped = true;
+  r(1).stops = {"op1"};
+  r(1).reason = Reason::stopped;
+  r(2).mode = "hold";
+  r(2).reason = Reason::not_holder;  // It came to this operator in hold.
+  r(3).goal_state = GoalState::reached;
+  r(3).moving_allowed = true;
+  r(4).mode = "hold";
+  r(5).mode = "convoy_follow";
+  r(5).moving_allowed = true;
+  r(5).convoy = {"r4", "r5"};
+  for (int i = 0; i < 200; ++i) pass(1.0);
+  EXPECT_TRUE(shown().empty());
+}
+
+TEST_F(AlertQueueTest, AnotherReasonIsAnotherAlert) {
+  r(1).reason = Reason::blocked;
+  say("r1", "blocked");
+  queue_.add({{.code = "blocked", .reason = Reason::blocked, .robot = "r1"}, 0, 0.0, true}, world_, now_);
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre("blocked r1 x2"));
+  r(1).reason = Reason::odometry_jumped;
+  pass(0.1);
+  pass(AlertQueue::kSettles);
+  EXPECT_THAT(shown(), ElementsAre("odometry_jumped r1"));
+}
+
+TEST_F(AlertQueueTest, ARobotThatIsLostKeepsItsAlertsUntilItsStateIsKnownAgain) {
+  r(1).stopped = true;
+  r(1).stops = {"op2"};
+  say("r1", "stopped");
+  pass(1.0);
+  queue_.see(queue_.shown(now_)[0].id);
+  r(1).lost = true;
+  r(1).age = 3.0;
+  pass(3.0);
+  pass(AlertQueue::kSettles);
+  EXPECT_THAT(shown(), ElementsAre("stopped r1", "lost r1"));
+  r(1).lost = r(1).stopped = false;
+  r(1).stops.clear();
+  r(1).age = 0.0;
+  pass(0.1);
+  EXPECT_TRUE(shown().empty());
 }
 
 TEST_F(AlertQueueTest, TheSameIsCountedInOneRow) {
@@ -156,11 +250,11 @@ TEST_F(AlertQueueTest, ARobotThatAnotherOperatorTookNeedsNothingHere) {
 TEST_F(AlertQueueTest, ARobotThatWasTakenAwayIsUrgentUntilItWasSeen) {
   r(1).mine = false;
   r(1).holder = "op2";
-  say("r2", "idle");
+  say("r2", "lock_lapsed");
   EXPECT_EQ(say("r1", "taken"), Priority::act);
   EXPECT_EQ(say("r3", "released"), Priority::know) << "it was given away";
   pass(60.0);
-  EXPECT_THAT(shown(), ElementsAre("taken r1", "idle r2"));
+  EXPECT_THAT(shown(), ElementsAre("taken r1", "lock_lapsed r2"));
 }
 
 TEST_F(AlertQueueTest, EndsWhenItsCauseIsGone) {
@@ -177,13 +271,17 @@ TEST_F(AlertQueueTest, EndsWhenItsCauseIsGone) {
   pass(1.0);
   EXPECT_THAT(shown(), ElementsAre("lost r2"));
   say("r2", "back");
-  EXPECT_THAT(shown(), ElementsAre());
+  pass(0.1);
+  EXPECT_THAT(shown(), ElementsAre()) << "also by a state that is older";
+  r(2).lost = false;
 
   r(3).stopped = true;
+  r(3).stops = {"op2"};
   say("r3", "stopped");
   pass(60.0);
   EXPECT_THAT(shown(), ElementsAre("stopped r3"));
   r(3).stopped = false;
+  r(3).stops.clear();
   pass(1.0);
   EXPECT_THAT(shown(), ElementsAre());
 }
@@ -211,7 +309,7 @@ TEST_F(AlertQueueTest, ManyRobotsWithOneCodeAreOneRow) {
   EXPECT_THAT(shown(), ElementsAre("lost r1 r2 r3 r4 x4"));
   say("r2", "back");
   EXPECT_THAT(shown(), ElementsAre("lost r1 r3 r4 x4"));
-  for (const int i : {1, 3, 4}) r(i).lost = false;
+  for (const int i : {1, 2, 3, 4}) r(i).lost = false;
   pass(1.0);
   EXPECT_THAT(shown(), ElementsAre());
 }

@@ -46,11 +46,10 @@ std::string short_who(const std::vector<std::string>& robots, const Numbers& num
 }
 
 Need need_of(const Alert& alert, const station::World& world, const Numbers& numbers, double now) {
-  const station::AlertRow* row = station::alert_row(alert.code);
   const bool act = alert.priority == station::Priority::act;
   constexpr std::size_t kShort = 45;  // Characters that have room at the top of the window.
   const std::string what = what_of(alert, world);
-  const bool ends_when_seen = !row || row->ends == station::Ends::seen;
+  const bool ends_when_seen = alert.ends == station::Ends::seen;
   Need need{.id = "alert " + std::to_string(alert.id),
             .robots = alert.robots,
             .who = alert.robots.empty() ? "station" : command::joined(alert.robots, ""),
@@ -72,31 +71,14 @@ Need need_of(const Alert& alert, const station::World& world, const Numbers& num
   return need;
 }
 
-/// Whether the robot stands because this operator stopped it.
-bool stopped_here(const station::Robot& robot, const station::World& world) {
-  return robot.stops.size() == 1 && robot.stops.front() == world.station;
-}
-
 }  // namespace
 
-std::vector<Need> needs_of(const station::AlertQueue& queue, const station::World& world,
-                           const Trails& trails, double now, double silent) {
+std::vector<Need> needs_of(const station::AlertQueue& queue, const station::World& world, double now) {
   Numbers numbers;
   const std::vector<int> in_order = station::numbers_of(world);
   for (std::size_t i = 0; i < in_order.size(); ++i) numbers[world.robots[i].name] = in_order[i];
   std::vector<Need> needs;
   for (const Alert& alert : queue.shown(now)) needs.push_back(need_of(alert, world, numbers, now));
-  for (const station::Robot& robot : world.robots) {
-    const Card card = card_of(robot, 0, silent, trails.stale_after(robot.name));
-    if (!robot.mine || !card.needs_operator || queue.concerns(robot.name)) continue;
-    if (card.contact != Contact::lost && stopped_here(robot, world)) continue;
-    needs.push_back({.id = "state " + robot.name,
-                     .robots = {robot.name},
-                     .who = robot.name,
-                     .short_who = short_who({robot.name}, numbers),
-                     .text = card.headline + ": " + card.detail,
-                     .short_text = card.short_headline + ": " + card.short_detail});
-  }
   return needs;
 }
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "basestation/alert/queue.hpp"
-#include "basestation/gui/scene/trails.hpp"
 
 namespace adit::gui {
 
@@ -21,14 +20,11 @@ struct Need {
   bool urgent{};          ///< Motion or control is at stake, and the operator has not seen it yet.
   bool can_see{};         ///< It waits until the operator has seen it.
   bool can_wait{};        ///< The operator may put it off.
-  std::uint64_t alert{};  ///< Of the queue; 0: the robot's state alone says it.
+  std::uint64_t alert{};  ///< Of the queue.
   bool operator==(const Need&) const = default;
 };
 
-/// What needs this operator: the alerts of the queue, and the operator's robots whose state says that they do
-/// nothing useful although no notification of it was heard, e.g. because the window was opened later. The
-/// most urgent and then the oldest first. `silent`: time since the station's last snapshot, s.
-std::vector<Need> needs_of(const station::AlertQueue& queue, const station::World& world,
-                           const Trails& trails, double now, double silent);
+/// The alerts of the queue in the words of the window, in its order.
+std::vector<Need> needs_of(const station::AlertQueue& queue, const station::World& world, double now);
 
 }  // namespace adit::gui

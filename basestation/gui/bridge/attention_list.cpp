@@ -25,7 +25,7 @@ station::Priority AttentionList::add(const station::Notice& notice) {
 void AttentionList::refresh() {
   queue_.update(control_.world(), control_.now());
   const bool was_open = is_open();
-  needs_ = needs_of(queue_, control_.world(), control_.trails(), control_.now(), control_.silent_for());
+  needs_ = needs_of(queue_, control_.world(), control_.now());
   std::vector<QVariantList> rows;
   for (const Need& need : needs_) {
     rows.push_back({text_of(need.id), need.urgent, text_of(need.who), text_of(need.short_who),
