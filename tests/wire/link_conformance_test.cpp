@@ -12,6 +12,11 @@ constexpr TopicInfo kState{"adit/test_state", "Number", QosClass::state, 1, fals
 constexpr TopicInfo kKeyed{"adit/test_keyed", "Keyed", QosClass::state, 1, true, 4096};
 constexpr TopicInfo kBulk{"adit/test_bulk", "Block", QosClass::bulk, 64, false, 4096};
 
+/// The topic whose announcement is the longest, and a partition of the longest name.
+constexpr TopicInfo kLongNamed{
+    "adit/acknowledgement", "adit::radio::v1::Acknowledgement", QosClass::urgent, 1, false, 512};
+constexpr std::size_t kLongestName = 32;
+
 std::vector<std::uint8_t> sample(std::uint32_t number, std::size_t size = 8) {
   std::vector<std::uint8_t> bytes(std::max<std::size_t>(size, 8));
   bytes[1] = 1;
@@ -236,6 +241,20 @@ TEST(LiveRange, PeerBelievedOutOfRangeReceivesNothingUntilItIsNear) {
   const auto peers = a->peers();
   ASSERT_EQ(peers.size(), 1U);
   EXPECT_NEAR(peers[0].signal.value(), 27.0 - 40.0 - 20.0, 1e-9);
+}
+
+/// An announcement that needs two datagrams never arrives.
+TEST(LiveFrames, ParticipantsMeetWhereFramesAreSmallAndNamesLong) {
+  for (const std::uint32_t frame : {200U, 500U}) {
+    LiveNet net({{.bandwidth = 1e6, .latency = 0.001, .frame = frame}});
+    const std::string partition(kLongestName, 'x');
+    const auto strand = net.strand("test");
+    const auto a = net.join(std::string(kLongestName, 'a')), b = net.join(std::string(kLongestName, 'b'));
+    const auto writer = a->make_writer(kLongNamed, partition).value();
+    const auto reader =
+        b->make_reader(kLongNamed, partition, *strand, [](auto, const SampleInfo&) { return true; }).value();
+    EXPECT_TRUE(net.until([&] { return writer->matched() == 1; })) << "frames of " << frame << " B";
+  }
 }
 
 }  // namespace

@@ -31,6 +31,11 @@ constexpr std::uint32_t kSendBuffer = 212992;       // Bytes, the default of Lin
 /// heartbeat, 32 bytes, which hardly ever goes with a fragment. With 20 of these, an endpoint announcement
 /// fits one frame of 500 bytes.
 constexpr std::uint32_t kNeverSent = 60 + 20;
+/// The longest announcement of an endpoint (longest topic and type, a name of 32 bytes as partition, one
+/// address) with what kNeverSent is for, bytes. The library does not repair an announcement that needs two
+/// datagrams.
+constexpr std::uint32_t kAnnouncement = 592;
+constexpr std::uint32_t kAddress = 24;                 // Each further address in it.
 constexpr const char* kRtpsMulticast = "239.255.0.1";  // RTPS multicast group.
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
@@ -123,8 +128,10 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   udp->maxMessageSize = params.large_samples ? kLoopbackDatagram : WireCost::kFrame + kNeverSent;
   if (params.large_samples) udp->receiveBufferSize = kScanBuffer;
   if (params.link) {
+    const auto addresses = static_cast<std::uint32_t>(udp->interfaceWhiteList.size());
+    const std::uint32_t frame = params.link->frame_bytes() - WireCost::kUdpAndIp + kNeverSent;
     udp->maxMessageSize =
-        std::min(udp->maxMessageSize, params.link->frame_bytes() - WireCost::kUdpAndIp + kNeverSent);
+        std::min(udp->maxMessageSize, std::max(frame, kAnnouncement + kAddress * (addresses - 1)));
     const Budget budget;
     add_flow(kBulkFlow, budget.share[5], *params.link, qos);
     add_flow(kVideoFlow, budget.share[6], *params.link, qos);
