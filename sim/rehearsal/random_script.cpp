@@ -9,8 +9,8 @@
 namespace adit::sim {
 namespace {
 
-constexpr std::array kVerbs{"take", "release", "lock", "unlock", "grant",   "goto", "drive",
-                            "stop", "reset",   "mode", "convoy", "peeloff", "yield"};
+constexpr std::array kVerbs{"take", "release", "lock", "unlock", "grant",   "goto",  "drive",
+                            "stop", "reset",   "mode", "convoy", "peeloff", "yield", "area"};
 
 std::string number(double value) {
   char text[32];
@@ -20,6 +20,29 @@ std::string number(double value) {
 
 const std::string& pick(const std::vector<std::string>& from, Random& random) {
   return from[random.below(from.size())];
+}
+
+/// A place within reach of the robot's start, world frame, m.
+Eigen::Vector2d draw_place(const RandomScript& spec, const Scenario& scenario, const std::string& robot,
+                           Random& random) {
+  const RobotSpec* start = scenario.robot(robot);
+  const Pose2 pose = start ? start->pose : Pose2{};
+  const double x = pose.x + random.uniform(-spec.reach.x(), spec.reach.x());
+  return {x, pose.y + random.uniform(-spec.reach.y(), spec.reach.y())};
+}
+
+/// Adds, replaces or removes one of two areas of the robot.
+std::string draw_area(const RandomScript& spec, const Scenario& scenario, const std::string& robot,
+                      Random& random) {
+  const std::string name = random.chance(0.5) ? "near" : "far";
+  if (random.chance(0.25)) return "area " + robot + " remove " + name;
+  const bool inside = random.chance(0.2);
+  const Eigen::Vector2d middle = draw_place(spec, scenario, robot, random);
+  const double largest = inside ? 8.0 : 1.5, smallest = inside ? 3.0 : 0.3;
+  const Eigen::Vector2d half(random.uniform(smallest, largest), random.uniform(smallest, largest));
+  const Eigen::Vector2d low = middle - half, high = middle + half;
+  return "area " + robot + " add " + name + (inside ? " keep_in " : " keep_out ") + number(low.x()) + " " +
+         number(low.y()) + " " + number(high.x()) + " " + number(high.y());
 }
 
 std::string draw_command(const RandomScript& spec, const Scenario& scenario, const std::string& by,
@@ -33,10 +56,8 @@ std::string draw_command(const RandomScript& spec, const Scenario& scenario, con
     return head + " " + to;
   }
   if (verb == "goto") {
-    const RobotSpec* start = scenario.robot(robot);
-    const Pose2 pose = start ? start->pose : Pose2{};
-    return head + " " + number(pose.x + random.uniform(-spec.reach, spec.reach)) + " " +
-           number(pose.y + random.uniform(-spec.reach, spec.reach));
+    const Eigen::Vector2d place = draw_place(spec, scenario, robot, random);
+    return head + " " + number(place.x()) + " " + number(place.y());
   }
   if (verb == "drive")
     return head + " " + number(random.uniform(-0.5, 1.0)) + " 0 " + number(random.uniform(-0.8, 0.8)) +
@@ -50,6 +71,7 @@ std::string draw_command(const RandomScript& spec, const Scenario& scenario, con
       if (other != robot && (followers.empty() || random.chance(0.5))) followers += " " + other;
     return followers.empty() ? "convoy stop " + robot : "convoy start " + robot + followers;
   }
+  if (verb == "area") return draw_area(spec, scenario, robot, random);
   if (verb == "yield") return head + (random.chance(0.7) ? " on" : " off");
   if (verb == "reset") return random.chance(0.4) ? head + " --override" : head;
   if (verb == "mode") {

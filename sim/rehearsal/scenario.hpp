@@ -61,7 +61,7 @@ struct RandomScript {
   std::vector<std::string> by{};
   std::vector<std::string> robots{};
   std::vector<std::string> verbs{};
-  double reach{3.0};  ///< Largest distance of a random goto from the start, m.
+  Eigen::Vector2d reach{3.0, 3.0};  ///< Largest distance of a random place from the start, along x and y, m.
 };
 
 /// Random faults: `faults` of them that begin between `from` and `to`, each of one of `kinds`.

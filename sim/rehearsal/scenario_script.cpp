@@ -71,11 +71,17 @@ RandomScript read_random(const Node& node, const Scenario& scenario) {
   out.verbs = node.texts("verbs", {"take", "lock", "release", "grant", "goto", "drive", "stop", "reset"});
   for (const std::string& verb : out.verbs)
     if (!is_random_verb(verb))
-      node.child("verbs").fail(
-          Reason::unknown_command,
-          "expected take, release, lock, unlock, grant, goto, drive, stop, reset or mode, not " + verb);
+      node.child("verbs").fail(Reason::unknown_command,
+                               "expected take, release, lock, unlock, grant, goto, drive, stop, reset, mode, "
+                               "convoy, peeloff, yield or area, not " +
+                                   verb);
   if (out.verbs.empty()) node.fail(Reason::bad_argument, "expected at least one verb");
-  out.reach = node.number("reach", config::positive_up_to(1000.0), out.reach);
+  if (const Node reach = node.child("reach"); reach.is_list()) {
+    const auto both = node.numbers("reach", 2, 2, config::positive_up_to(1000.0));
+    if (both.size() == 2) out.reach = {both[0], both[1]};
+  } else {
+    out.reach.setConstant(node.number("reach", config::positive_up_to(1000.0), out.reach.x()));
+  }
   return out;
 }
 

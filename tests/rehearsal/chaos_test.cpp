@@ -22,8 +22,13 @@ Scenario short_team() {
   return scenario;
 }
 
-RunReport run_chaos(const Scenario& scenario, std::uint64_t seed, const std::string& defect = {}) {
+std::shared_ptr<const World> team_world() {
   static const auto world = *make_world(team().world);
+  return world;
+}
+
+RunReport run_chaos(const Scenario& scenario, std::uint64_t seed, const std::string& defect = {},
+                    const std::shared_ptr<const World>& world = team_world()) {
   RunParams params;
   params.seed = seed;
   params.workers = 1;
@@ -33,22 +38,30 @@ RunReport run_chaos(const Scenario& scenario, std::uint64_t seed, const std::str
   return std::move(outcome->report);
 }
 
-TEST(Chaos, SeedsBreakNoRule) {
-  const Scenario scenario = team();
-  std::vector<RunReport> reports(seeds(4, 20));
+void expect_no_rule_broken(const char* file, std::size_t count, std::size_t commands, std::size_t faults) {
+  const Scenario scenario = load_shipped(file);
+  const auto world = *make_world(scenario.world);
+  std::vector<RunReport> reports(count);
   {
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
-      for (std::size_t i = next++; i < reports.size(); i = next++) reports[i] = run_chaos(scenario, i + 1);
+      for (std::size_t i = next++; i < reports.size(); i = next++)
+        reports[i] = run_chaos(scenario, i + 1, {}, world);
     };
     const std::jthread one(work), two(work);
   }
   for (const RunReport& report : reports) {
     for (const std::string& line : report.complaints())
       ADD_FAILURE() << "seed " << report.seed << ": " << line;
-    EXPECT_GE(report.commands.sent, 30U);
-    EXPECT_GE(report.fault_count(), 5U);
+    EXPECT_GE(report.commands.sent, commands);
+    EXPECT_GE(report.fault_count(), faults);
   }
+}
+
+TEST(Chaos, SeedsBreakNoRule) { expect_no_rule_broken("team_chaos.yaml", seeds(4, 20), 30, 5); }
+
+TEST(Chaos, SeedsOfACorridorWithAreasBreakNoRule) {
+  expect_no_rule_broken("fence_chaos.yaml", seeds(2, 20), 25, 3);
 }
 
 TEST(Chaos, RandomFaultsWrittenToAFileGiveTheSameRun) {

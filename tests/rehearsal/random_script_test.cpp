@@ -16,7 +16,7 @@ RandomScript spec() {
       200,          5s,
       55s,          {"op1", "op2", "op3"},
       {"r1", "r2"}, {"take", "release", "lock", "unlock", "grant", "goto", "drive", "stop", "reset", "mode"},
-      3.0};
+      {3.0, 3.0}};
 }
 
 Scenario scenario() {
@@ -61,6 +61,20 @@ TEST(RandomScript, ConvoysAreStartedStoppedAndLeft) {
       if (line.command.starts_with(text)) seen.insert(text);
   }
   EXPECT_EQ(seen.size(), 5U);
+}
+
+TEST(RandomScript, AreasAreAddedAndRemovedWithinReachOfTheStart) {
+  RandomScript areas = spec();
+  areas.verbs = {"area"};
+  areas.reach = {4.0, 0.5};
+  std::set<std::string> seen;
+  for (const ScriptLine& line : draw_script(areas, scenario(), Random(9))) {
+    const auto request = command::parse(line.command);
+    EXPECT_TRUE(request.ok()) << line.command << ": " << (request ? "" : request.error().text);
+    for (const char* text : {"add near keep_out", "add far keep_in", "remove near"})
+      if (line.command.find(text) != std::string::npos) seen.insert(text);
+  }
+  EXPECT_EQ(seen.size(), 3U);
 }
 
 TEST(RandomScript, KeepsToItsTimesAndUsesEveryVerb) {

@@ -120,7 +120,7 @@ void add_chaos(Scenario& scenario) {
   const Duration from = scenario.duration / 20, to = scenario.duration * 19 / 20;
   if (!scenario.random_faults) scenario.random_faults = RandomFaults{8, from, to, random_fault_kinds()};
   if (scenario.random || !scenario.script.empty()) return;
-  RandomScript script{70, from, to, {}, {}, all_random_verbs(), 4.0};
+  RandomScript script{70, from, to, {}, {}, all_random_verbs(), {4.0, 4.0}};
   for (const StationSpec& station : scenario.stations) script.by.push_back(station.id);
   for (const RobotSpec& robot : scenario.robots) script.robots.push_back(robot.id);
   if (!script.by.empty()) scenario.random = script;
