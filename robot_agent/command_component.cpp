@@ -208,6 +208,7 @@ Result<void> Agent::CommandComponent::on_start() {
         [this](const MapFrame& corrected, const Reply<MapFrame>& reply) { reply(correct_map(corrected)); });
   context_.command_component = this;
   context_.driver->write({});
+  context_.radio->forget_judgements();  // Of the component before this one: they never end.
   if (context_.instances == 1)
     context_.radio->send_capabilities(params_.platform, params_.id, kProtocolVersion, behaviour_.table());
   behaviour_.tick(now());

@@ -252,6 +252,8 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
       topics::kCarryPartition);
 }
 
+void RadioEdge::forget_judgements() { endpoints_->judged.clear(); }
+
 void RadioEdge::reach_carriers() {
   Endpoints& e = *endpoints_;
   if (std::exchange(e.reaches_carriers, true)) return;

@@ -75,6 +75,9 @@ class RadioEdge {
   void send(const TeamBeacon& beacon);
   /// Sends a piece of content to the stations, or to the carriers. `session`: of the sender.
   void send(const transfer::Piece& piece, std::uint32_t session);
+  /// Takes a repeat of a goal that is being judged for a new command: a judgement ends with the command
+  /// component.
+  void forget_judgements();
   /// Opens the endpoints to the robots that carry maps, unless they are open; nothing is sent to them before.
   void reach_carriers();
   /// Sends a carrier's receipts to the robots that reach for carriers.

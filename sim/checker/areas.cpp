@@ -13,6 +13,8 @@ namespace {
 constexpr Duration kBraking = 1s;
 /// Distance from the border in standard deviations of the place.
 constexpr double kBorderSigmas = 3.0;
+/// Of the time to brake when an area is added in front of a robot that moves: factor, and time to react, s.
+constexpr double kBrakingFactor = 1.1, kReactionTime = 0.25;
 /// A body that was nearer than that may get so much nearer, or farther out, on its way back, m.
 constexpr double kSlack = 0.15;
 
@@ -46,7 +48,11 @@ class AreasAreHard : public Rule {
     const CommandHeard& command = pending->command;
     if (command.verb == Verb::area_remove || command.verb == Verb::area_add) kept_.reset();
     if (command.verb == Verb::area_remove) areas_.remove(command.text);
-    if (command.verb == Verb::area_add) add(command);
+    if (command.verb != Verb::area_add) return;
+    add(command);
+    const Twist2& v = robot.truth().velocity;
+    const double braking = std::hypot(v.vx, v.vy) / robot.facts().max_acceleration;
+    braked_by_ = robot.now() + from_seconds(braking * kBrakingFactor + kReactionTime);
   }
 
   void add(const CommandHeard& command) {
@@ -76,7 +82,8 @@ class AreasAreHard : public Rule {
     within_ = areas_.permits(body, height_);
     const std::string& mode = robot.mode();
     const bool autonomous = robot.alive() && !mode.empty() && mode != "hold" && !robot.in_manual_mode();
-    if (!autonomous || robot.age(robot.mode_changed()) < kBraking) return kept_.reset();
+    const bool brakes = robot.age(robot.mode_changed()) < kBraking || robot.now() < braked_by_;
+    if (!autonomous || brakes) return kept_.reset();
     char text[128];
     std::snprintf(text, sizeof text, "left the ground that its areas permit at %.2f %.2f in ", pose.x,
                   pose.y);
@@ -95,6 +102,7 @@ class AreasAreHard : public Rule {
   nav::AreaSet areas_{};
   double height_{};
   bool within_{true};
+  Duration braked_by_{};          ///< A robot that moved when an area was added may need so long to brake.
   double needed_{};               ///< Distance from forbidden ground by the stated deviation, m.
   std::optional<double> kept_{};  ///< Greatest distance since the mode began or more was needed, m.
 };

@@ -76,7 +76,7 @@ RandomScript read_random(const Node& node, const Scenario& scenario) {
                                "convoy, peeloff, yield or area, not " +
                                    verb);
   if (out.verbs.empty()) node.fail(Reason::bad_argument, "expected at least one verb");
-  if (const Node reach = node.child("reach"); reach.is_list()) {
+  if (node.has("reach") && node.child("reach").is_list()) {
     const auto both = node.numbers("reach", 2, 2, config::positive_up_to(1000.0));
     if (both.size() == 2) out.reach = {both[0], both[1]};
   } else {

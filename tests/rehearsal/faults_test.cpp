@@ -32,6 +32,25 @@ void expect_both(const std::string& script, const std::string& faults, const std
   EXPECT_FALSE(run(script + "expect:\n" + expect).ok()) << "the fault makes no difference";
 }
 
+TEST(Faults, AGoalWhoseJudgementEndsWithTheCommandComponentIsAnsweredWhenItIsRepeated) {
+  for (int after = 30; after <= 46; after += 2) {
+    const std::string head = R"(world: {boxes: [[-9, 9, 2, 2.3, 0, 2.5]], floor: 0, ceiling: 3}
+duration: 7
+link: {name: mine, bandwidth: 2e6, latency: 0.03}
+lidar: planar
+robots:
+  - {id: r1, platform: wheeled, pose: [0, 0, 0]}
+basestations:
+  - {id: op1, pose: [0, 3]}
+script:
+  - {at: 5, by: op1, do: goto r1 2 0}
+faults:
+  - {at: 5.0)";
+    const RunReport report = run_text(head + std::to_string(after) + ", crash: r1/command}\n", "faults.yaml");
+    for (const std::string& line : report.complaints()) ADD_FAILURE() << after << " ms: " << line;
+  }
+}
+
 TEST(Faults, OverlappingCutsEndOnlyThemselves) {
   expect_both("  - {at: 7, by: op1, do: mode r1 hold}\n",
               "  - {at: 5, cut: [op1, r1], for: 8}\n  - {at: 6, cut: [r1, op1], for: 0.5}\n",
