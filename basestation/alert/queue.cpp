@@ -18,6 +18,13 @@ Priority priority_of(const Notice& notice, const AlertRow* row, const Robot* rob
   return row->priority;
 }
 
+Priority priority_of(const Condition& condition, const Robot& robot) {
+  const AlertRow* row = alert_row(condition.code);
+  if (!row || (row->by_hand && !is_by_hand(robot.mode))) return Priority::soon;
+  // Some reasons have the name of news; a robot that does not move because of them is more than that.
+  return std::min(row->priority, Priority::soon);
+}
+
 /// The place of an alert among those of its priority: that of its row, or of a blocked robot if it has none.
 std::size_t rank_of(const Alert& alert) {
   const AlertRow* row = alert_row(alert.code);
@@ -46,9 +53,10 @@ Alert* AlertQueue::find_from_state(const std::string& robot, Ends ends) {
   return nullptr;
 }
 
-bool AlertQueue::covers(const std::string& robot, Ends ends) const {
-  return std::ranges::any_of(alerts_,
-                             [&](const Alert& alert) { return alert.ends <= ends && names(alert, robot); });
+bool AlertQueue::covers(const std::string& robot, const Condition& condition) const {
+  return std::ranges::any_of(alerts_, [&](const Alert& alert) {
+    return (alert.ends <= condition.ends || alert.code == condition.code) && names(alert, robot);
+  });
 }
 
 bool AlertQueue::is_over(const Alert& alert, const Robot& robot, double now) const {
@@ -59,12 +67,11 @@ bool AlertQueue::is_over(const Alert& alert, const Robot& robot, double now) con
   // The state may be older than the notification.
   if (robot.lost || now - robot.age <= alert.last) return false;
   if (alert.ends == Ends::not_locked) return !robot.mine || !robot.locked;
-  if (!robot.mine) return false;
   const auto found = conditions_.find({robot.name, alert.ends});
-  if (found == conditions_.end()) return true;
-  const Condition& is = found->second.condition;
-  const bool other = is.reason != alert.reason && is.code != alert.code && alert.reason != Reason::none;
-  return alert.ends == Ends::goes_on && other && now - found->second.since >= kSettles;
+  // A condition that the state did not show yet may be in a message that was lost.
+  if (found == conditions_.end()) return alert.confirmed || now - alert.last >= kEvidence;
+  const bool other = alert.confirmed && *alert.confirmed != found->second.condition.reason;
+  return other && !alert.from_state && now - found->second.code_since >= kSettles;
 }
 
 void AlertQueue::close(const std::string& robot, const std::string& closing, double now) {
@@ -73,7 +80,7 @@ void AlertQueue::close(const std::string& robot, const std::string& closing, dou
     if (!row || row->closed_by != closing || std::erase(alert.robots, robot) == 0) continue;
     // The state may be older than this notification.
     if (const auto known = conditions_.find({robot, alert.ends}); known != conditions_.end())
-      known->second.since = now;
+      known->second.since = known->second.code_since = now;
   }
   std::erase_if(alerts_, [&](const Alert& alert) {
     const AlertRow* row = alert_row(alert.code);
@@ -108,9 +115,11 @@ Priority AlertQueue::add(const Notice& notice, const World& world, double now) {
     shown->code = notice.code;
     shown->text = notice.text;
     shown->reason = notice.reason;
-    shown->priority = std::min(shown->priority, priority);
+    shown->priority = priority;
     shown->last = std::max(shown->last, at);
     shown->from_state = false;
+    shown->seen = false;
+    shown->hidden_until = 0.0;
     return priority;
   }
   insert({.priority = priority,
@@ -133,12 +142,22 @@ void AlertQueue::insert(Alert alert) {
   gather(alert);
 }
 
-void AlertQueue::look(const Robot& robot, const std::string& station, double now) {
+void AlertQueue::take_conditions(const Robot& robot, const std::string& station, double now) {
   const std::vector<Condition> conditions = conditions_of(robot, station);
   for (const Condition& condition : conditions) {
-    Settling& settling = conditions_.try_emplace({robot.name, condition.ends}, condition, now).first->second;
-    if (settling.condition.code != condition.code) settling.since = now;
+    const Settling begins{condition, now, now};
+    Settling& settling = conditions_.try_emplace({robot.name, condition.ends}, begins).first->second;
+    if (settling.condition.code != condition.code) settling.code_since = now;
     settling.condition = condition;
+    for (Alert& alert : alerts_)
+      if (alert.ends == condition.ends && names(alert, robot.name) && !alert.confirmed)
+        alert.confirmed = condition.reason;
+    if (Alert* shown = find_from_state(robot.name, condition.ends)) {
+      shown->code = condition.code;
+      shown->text = condition.text;
+      shown->reason = condition.reason;
+      shown->priority = priority_of(condition, robot);
+    }
   }
   std::erase_if(conditions_, [&](const auto& entry) {
     const auto& [name, ends] = entry.first;
@@ -146,20 +165,18 @@ void AlertQueue::look(const Robot& robot, const std::string& station, double now
   });
 }
 
-void AlertQueue::add_condition(const Robot& robot, const Condition& condition, double since) {
-  const AlertRow* row = alert_row(condition.code);
-  // Some reasons have the name of news; a robot that does not move because of them is more than that.
-  Priority priority = row ? std::min(row->priority, Priority::soon) : Priority::soon;
-  if (row && row->by_hand && !is_by_hand(robot.mode)) priority = Priority::soon;
-  insert({.priority = priority,
+void AlertQueue::add_condition(const Robot& robot, const Settling& settling) {
+  const Condition& condition = settling.condition;
+  insert({.priority = priority_of(condition, robot),
           .code = condition.code,
           .ends = condition.ends,
           .from_state = true,
+          .confirmed = condition.reason,
           .robots = {robot.name},
           .text = condition.text,
           .reason = condition.reason,
-          .first = since,
-          .last = since});
+          .first = settling.since,
+          .last = settling.since});
 }
 
 void AlertQueue::absorb(const Alert& newest) {
@@ -211,7 +228,7 @@ void AlertQueue::make_room() {
 
 void AlertQueue::update(const World& world, double now) {
   std::erase_if(conditions_, [&](const auto& entry) { return !world.robot(entry.first.first); });
-  for (const Robot& robot : world.robots) look(robot, world.station, now);
+  for (const Robot& robot : world.robots) take_conditions(robot, world.station, now);
   for (Alert& alert : alerts_)
     if (alert.ends != Ends::seen)
       std::erase_if(alert.robots, [&](const std::string& name) {
@@ -221,12 +238,13 @@ void AlertQueue::update(const World& world, double now) {
   std::erase_if(alerts_, [](const Alert& alert) {
     return alert.ends == Ends::seen ? alert.seen : alert.robots.empty();
   });
-  for (const Robot& robot : world.robots)
-    for (const Condition& condition : conditions_of(robot, world.station)) {
-      const double since = conditions_.at({robot.name, condition.ends}).since;
-      if (now - since >= kSettles && !covers(robot.name, condition.ends))
-        add_condition(robot, condition, since);
-    }
+  for (const auto& [key, settling] : conditions_) {
+    const std::string& name = key.first;
+    const Robot* robot = world.robot(name);
+    const double settles = settling.condition.certain ? kSettles : kEvidence;
+    if (robot->mine && now - settling.since >= settles && !covers(name, settling.condition))
+      add_condition(*robot, settling);
+  }
 }
 
 void AlertQueue::see(std::uint64_t id) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@ struct Alert {
   std::string code{};
   Ends ends{Ends::seen};
   bool from_state{};                  ///< The state of the robot shows it; no notification of it was heard.
+  std::optional<Reason> confirmed{};  ///< The state's reason when it showed the condition; empty: not yet.
   std::vector<std::string> robots{};  ///< Empty: it concerns the station.
   std::string text{};                 ///< Of the newest notification, or of the state.
   Reason reason{Reason::none};
@@ -40,6 +42,8 @@ class AlertQueue {
  public:
   static constexpr double kTogether = 5.0;  ///< s
   static constexpr double kSettles = 0.5;   ///< A condition that ends within this time is no alert, s.
+  /// Time for the state that a notification is about: a message of it that was lost is repeated within, s.
+  static constexpr double kEvidence = 2.0;
   static constexpr std::size_t kManyRobots = 3;
   static constexpr double kLater = 300.0;         ///< How long `later` hides an alert, s.
   static constexpr std::size_t kMaxAlerts = 256;  ///< Further ones replace the oldest of the lowest priority.
@@ -62,18 +66,20 @@ class AlertQueue {
   /// A condition of a robot, and since when its state shows it.
   struct Settling {
     Condition condition{};
-    double since{};  ///< s
+    double since{};       ///< s
+    double code_since{};  ///< Since when it has its present code, s.
   };
 
   Alert* find(const std::string& robot, const std::string& code);
   /// The alert that the robot's state alone made for that condition; null: there is none.
   Alert* find_from_state(const std::string& robot, Ends ends);
   /// Whether the robot has an alert of that condition or of a more dangerous one.
-  bool covers(const std::string& robot, Ends ends) const;
+  bool covers(const std::string& robot, const Condition& condition) const;
   /// Whether the cause of an alert of that robot is gone.
   bool is_over(const Alert& alert, const Robot& robot, double now) const;
-  void look(const Robot& robot, const std::string& station, double now);
-  void add_condition(const Robot& robot, const Condition& condition, double since);
+  /// Takes the present conditions of a robot, and confirms and renews the alerts that are about them.
+  void take_conditions(const Robot& robot, const std::string& station, double now);
+  void add_condition(const Robot& robot, const Settling& settling);
   void insert(Alert alert);
   void close(const std::string& robot, const std::string& closing, double now);
   void gather(const Alert& newest);

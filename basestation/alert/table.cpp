@@ -13,7 +13,7 @@ constexpr std::array kRows{
     // Motion or control is at stake.
     AlertRow{"stop_not_acknowledged", act, Ends::seen, "stop_acknowledged"},
     AlertRow{"rival_writer", act},
-    AlertRow{"tilted", act, Ends::goes_on},
+    AlertRow{"tilted", act},
     AlertRow{"joystick_lost", act, Ends::goes_on, "", true},
     AlertRow{"driver_lost", act, Ends::goes_on, "", true},
     AlertRow{"lost", act, Ends::heard, "back", true},
@@ -26,9 +26,9 @@ constexpr std::array kRows{
     AlertRow{"radio_hangs", act},
     AlertRow{"battery_last", act},
 
-    // The robot does not know where it is, or cannot use what its driver sends.
+    // The robot does not know where it is, cannot use what its driver sends, or is about to fail.
     AlertRow{"odometry_jumped", soon, Ends::goes_on},
-    AlertRow{"localisation_lost", soon, Ends::goes_on, "localisation_ok"},
+    AlertRow{"localisation_lost", soon, Ends::seen, "localisation_ok"},
     AlertRow{"not_localised_here", soon, Ends::goes_on},
     AlertRow{"sensor_refused", soon, Ends::understood},
     AlertRow{"sensor_silent", soon},
@@ -42,17 +42,17 @@ constexpr std::array kRows{
     // The robot does nothing useful.
     AlertRow{"blocked", soon, Ends::goes_on, "arrived"},
     AlertRow{"unreachable", soon, Ends::goes_on, "arrived"},
-    AlertRow{"stuck", soon, Ends::goes_on, "arrived"},
+    AlertRow{"stuck", soon, Ends::seen, "arrived"},
     AlertRow{"start_in_collision", soon, Ends::goes_on, "arrived"},
     AlertRow{"unknown_budget", soon, Ends::goes_on, "arrived"},
-    AlertRow{"outside_area", soon, Ends::goes_on},
+    AlertRow{"outside_area", soon},
     AlertRow{"trail_impassable", soon, Ends::goes_on},
-    AlertRow{"convoy_lost", soon, Ends::goes_on},
-    AlertRow{"convoy_waits", soon, Ends::goes_on},
+    AlertRow{"convoy_lost", soon},
+    AlertRow{"convoy_waits", soon},
     AlertRow{"convoy_split", soon},
     AlertRow{"yield_refused", soon, Ends::goes_on, "made_way"},
     AlertRow{"yield_deadlock", soon, Ends::goes_on, "made_way"},
-    AlertRow{"return_refused", soon, Ends::goes_on},
+    AlertRow{"return_refused", soon},
     AlertRow{"explore_ended", soon},
 
     // It can wait.
@@ -72,7 +72,7 @@ constexpr std::array kRows{
     AlertRow{"radio_refused", soon},
 
     // News.
-    AlertRow{"idle", know},  // In hold, or at its goal: where the operator sent it.
+    AlertRow{"idle", know},  // It waits in hold or at its goal; the robot's state shows why it ended a mode.
     AlertRow{"granted", know},
     AlertRow{"released", know},
     AlertRow{"mode_changed", know},

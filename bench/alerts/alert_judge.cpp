@@ -95,7 +95,6 @@ void AlertJudge::look(const station::AlertQueue& queue, const station::World& wo
   looked_ = now;
   const std::vector<Alert> alerts = queue.shown(seconds(now));
   for (const Alert& alert : alerts) judge(alert, now);
-  // A row that is gone may come back with its number for another robot, never for the same.
   std::erase_if(known_, [&](const auto& known) {
     return std::ranges::none_of(alerts, [&](const Alert& alert) { return alert.id == known.first; });
   });

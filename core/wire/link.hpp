@@ -29,7 +29,8 @@ struct LinkProfile {
   /// 0: frames leave one after another. Otherwise nothing is queued, and what exceeds the bandwidth over this
   /// many seconds is dropped (SubT: 1), [0, 10].
   double window{0.0};
-  /// Largest frame, headers included, bytes, [200, 65000]; 0: 500 below 250 kbit/s, else 1400.
+  /// Largest frame, headers included, bytes, [200, 65000]; 0: 500 below 250 kbit/s, else 1400. Live, a frame
+  /// has room for at least 540, an endpoint's announcement.
   std::uint32_t frame{0};
   double fading{0.0};      ///< Path loss exponent, [0, 10]; 0: distance and walls have no effect.
   double path_loss{40.0};  ///< Path loss over the first metre, dB, [0, 200].

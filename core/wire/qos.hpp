@@ -94,6 +94,11 @@ struct Discovery {
   /// the peer waits for our next announcement.
   static constexpr Duration kAnnounceRetryPeriod = 200ms;
   static constexpr int kAnnounceRetries = 12;
+  /// A peer that fell silent until its lease ended is sent our announcement once in this time, for kSearch;
+  /// of several, one each kSearchStep. Otherwise both wait for the next announcement, 25 s later.
+  static constexpr Duration kSearchPeriod = 2s;
+  static constexpr Duration kSearchStep = 500ms;
+  static constexpr Duration kSearch = 3600s;
   /// Heartbeat period of endpoints that a peer has not acknowledged.
   static constexpr Duration kHeartbeat = 150ms;
 };

@@ -13,7 +13,7 @@ namespace {
 constexpr Duration kBraking = 1s;
 /// Distance from the border in standard deviations of the place.
 constexpr double kBorderSigmas = 3.0;
-/// Of the time to brake when an area is added in front of a robot that moves: factor, and time to react, s.
+/// Of the time to brake when the ground shrinks in front of a robot that moves: factor, and time to react, s.
 constexpr double kBrakingFactor = 1.1, kReactionTime = 0.25;
 /// A body that was nearer than that may get so much nearer, or farther out, on its way back, m.
 constexpr double kSlack = 0.15;
@@ -48,8 +48,9 @@ class AreasAreHard : public Rule {
     const CommandHeard& command = pending->command;
     if (command.verb == Verb::area_remove || command.verb == Verb::area_add) kept_.reset();
     if (command.verb == Verb::area_remove) areas_.remove(command.text);
-    if (command.verb != Verb::area_add) return;
-    add(command);
+    if (command.verb == Verb::area_add) add(command);
+    // Both can shrink the ground in front of the robot.
+    if (command.verb != Verb::area_add && command.verb != Verb::area_remove) return;
     const Twist2& v = robot.truth().velocity;
     const double braking = std::hypot(v.vx, v.vy) / robot.facts().max_acceleration;
     braked_by_ = robot.now() + from_seconds(braking * kBrakingFactor + kReactionTime);
@@ -102,7 +103,7 @@ class AreasAreHard : public Rule {
   nav::AreaSet areas_{};
   double height_{};
   bool within_{true};
-  Duration braked_by_{};          ///< A robot that moved when an area was added may need so long to brake.
+  Duration braked_by_{};          ///< A robot that moved when the ground shrank may need so long to brake.
   double needed_{};               ///< Distance from forbidden ground by the stated deviation, m.
   std::optional<double> kept_{};  ///< Greatest distance since the mode began or more was needed, m.
 };

@@ -39,7 +39,8 @@ std::string draw_area(const RandomScript& spec, const Scenario& scenario, const 
   const bool inside = random.chance(0.2);
   const Eigen::Vector2d middle = draw_place(spec, scenario, robot, random);
   const double largest = inside ? 8.0 : 1.5, smallest = inside ? 3.0 : 0.3;
-  const Eigen::Vector2d half(random.uniform(smallest, largest), random.uniform(smallest, largest));
+  const double length = random.uniform(smallest, largest), width = random.uniform(smallest, largest);
+  const Eigen::Vector2d half(length, width);
   const Eigen::Vector2d low = middle - half, high = middle + half;
   return "area " + robot + " add " + name + (inside ? " keep_in " : " keep_out ") + number(low.x()) + " " +
          number(low.y()) + " " + number(high.x()) + " " + number(high.y());

@@ -121,7 +121,9 @@ bool OperatorTruth::is_true(const std::string& name, Loss loss, Duration now) co
   const auto found = robots_.find(name);
   if (found == robots_.end()) return false;
   const Robot& robot = found->second;
-  const auto recent = [&](bool is, Duration until) { return is || now - until <= kRecent; };
+  const auto recent = [&](bool is, const std::optional<Duration>& until) {
+    return is || (until && now - *until <= kRecent);
+  };
   switch (loss) {
     case Loss::contact:
       // The station looks a few times a second.

@@ -27,7 +27,9 @@ constexpr std::string_view to_string(Loss loss) {
 }
 
 /// What one operator's robots lost, whatever his station and his window believe: from the frames that robots
-/// send, those of them that arrive at his machine, and the true motion.
+/// send, and those of them that arrive at his machine. Whether a robot does what it was sent to do is taken
+/// from what it says; its true motion shows robots that drive although they deny it, or stand although they
+/// do not.
 ///
 /// Frames and motions come in the order of time. Memory is bounded by the number of robots.
 class OperatorTruth {
@@ -61,7 +63,7 @@ class OperatorTruth {
     bool stopped{}, stands{};  ///< By another station; as Loss::motion.
     bool drives{};             ///< It has a goal, and says that it may move.
     Duration held_since{}, stopped_since{}, stands_since{}, drives_since{};
-    Duration stopped_until{}, stands_until{};  ///< Latest times with that.
+    std::optional<Duration> stopped_until{}, stands_until{};  ///< Latest times with that.
   };
   struct Robot {
     View sent{}, arrived{};

@@ -36,7 +36,6 @@ TEST(Card, ADrivingRobotOfMineSaysWhereItDrives) {
   EXPECT_EQ(r1.speed, "0.8 m/s");
   EXPECT_EQ(r1.battery, "82 %");
   EXPECT_EQ(r1.contact, Contact::live);
-  EXPECT_FALSE(r1.needs_operator);
 }
 
 TEST(Card, AStoppedRobotNamesWhoStoppedIt) {
@@ -57,7 +56,6 @@ TEST(Card, BlockedWaitingAndBrokenRobotsNeedTheOperator) {
   EXPECT_EQ(card("r6").detail, std::string(describe(Reason::terrain_stale)));
   EXPECT_EQ(card("r9").detail, "planner hung");
   EXPECT_EQ(card("r9").short_detail, "one component in trouble");
-  for (const char* name : {"r2", "r4", "r5", "r6", "r9"}) EXPECT_TRUE(card(name).needs_operator) << name;
 }
 
 TEST(Card, ALostRobotSaysWhenItWasHeard) {

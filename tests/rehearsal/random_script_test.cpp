@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "core/command/parse.hpp"
@@ -68,12 +70,22 @@ TEST(RandomScript, AreasAreAddedAndRemovedWithinReachOfTheStart) {
   areas.verbs = {"area"};
   areas.reach = {4.0, 0.5};
   std::set<std::string> seen;
+  double farthest = 0.0;
   for (const ScriptLine& line : draw_script(areas, scenario(), Random(9))) {
     const auto request = command::parse(line.command);
     EXPECT_TRUE(request.ok()) << line.command << ": " << (request ? "" : request.error().text);
     for (const char* text : {"add near keep_out", "add far keep_in", "remove near"})
       if (line.command.find(text) != std::string::npos) seen.insert(text);
+    double x0{}, y0{}, x1{}, y1{};
+    const std::size_t corners = line.command.find("keep_");
+    if (corners == std::string::npos) continue;
+    ASSERT_EQ(std::sscanf(line.command.c_str() + corners, "%*s %lf %lf %lf %lf", &x0, &y0, &x1, &y1), 4);
+    const bool first = line.command.starts_with("area r1");
+    EXPECT_NEAR((x0 + x1) / 2, first ? 1 : 5, 4.01);
+    EXPECT_NEAR((y0 + y1) / 2, first ? 2 : 5, 0.51);
+    farthest = std::max(farthest, std::abs((x0 + x1) / 2 - (first ? 1 : 5)));
   }
+  EXPECT_GT(farthest, 3.0);
   EXPECT_EQ(seen.size(), 3U);
 }
 

@@ -137,13 +137,92 @@ TEST_F(AlertQueueTest, WhatTheStateShowsNeedsNoNotification) {
   EXPECT_TRUE(shown().empty());
   pass(AlertQueue::kSettles);
   EXPECT_THAT(shown(),
-              ElementsAre("stopped r2", "lost r1", "component_failed r4", "driver_silent r3", "inputs r5"));
+              ElementsAre("stopped r2", "driver_lost r3", "lost r1", "component_failed r4", "inputs r5"));
   for (int i = 1; i <= 5; ++i) {
     r(i) = {};
     r(i).name = "r" + std::to_string(i);
     r(i).mine = true;
   }
   pass(0.1);
+  EXPECT_TRUE(shown().empty());
+}
+
+TEST_F(AlertQueueTest, AnAlertOfARobotThatNobodyHoldsEndsWithItsCause) {
+  r(1).stopped = true;
+  r(1).stops = {"op2"};
+  say("r1", "stopped");
+  pass(1.0);
+  r(1).mine = false;
+  pass(10.0);
+  EXPECT_THAT(shown(), ElementsAre("stopped r1"));
+  r(1).stopped = false;
+  r(1).stops.clear();
+  pass(0.1);
+  EXPECT_TRUE(shown().empty());
+  r(1).reason = Reason::blocked;
+  pass(10.0);
+  pass(10.0);
+  EXPECT_TRUE(shown().empty()) << "the state alone is no concern of this operator";
+}
+
+TEST_F(AlertQueueTest, AStateThatComesAfterTheNotificationConfirmsIt) {
+  say("r1", "component_failed");
+  for (int i = 0; i < 6; ++i) pass(0.2);  // The health report was lost, and is repeated.
+  EXPECT_THAT(shown(), ElementsAre("component_failed r1"));
+  const std::uint64_t id = queue_.shown(now_)[0].id;
+  r(1).troubles = {"planner FAILED"};
+  pass(0.2);
+  pass(60.0);
+  ASSERT_EQ(shown().size(), 1U);
+  EXPECT_EQ(queue_.shown(now_)[0].id, id);
+  EXPECT_EQ(queue_.shown(now_)[0].text, "r1 component_failed");
+  r(1).troubles.clear();
+  pass(0.2);
+  EXPECT_TRUE(shown().empty());
+  say("r2", "component_failed");
+  pass(AlertQueue::kEvidence);
+  EXPECT_TRUE(shown().empty()) << "the state never showed it";
+}
+
+TEST_F(AlertQueueTest, WhatTheRobotsStateDoesNotCarryStaysUntilItWasSeen) {
+  r(1).mode = "manual";
+  r(1).moving_allowed = true;
+  EXPECT_EQ(say("r1", "tilted"), Priority::act);
+  for (int i = 0; i < 60; ++i) pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre("tilted r1"));
+}
+
+TEST_F(AlertQueueTest, ANotificationWithAnotherReasonThanTheStatesStays) {
+  r(1).goal_state = GoalState::blocked;
+  r(1).reason = Reason::blocked;
+  pass(0.0);
+  pass(3.0);
+  const std::uint64_t id = queue_.shown(now_)[0].id;
+  queue_.later(id, now_);
+  queue_.add({{.code = "yield_refused", .reason = Reason::yield_refused, .robot = "r1"}, 0, 0.0, true},
+             world_, now_);
+  for (int i = 0; i < 50; ++i) pass(0.2);
+  EXPECT_THAT(shown(), ElementsAre("yield_refused r1")) << "it is shown again, in place of the state's";
+  EXPECT_EQ(queue_.shown(now_)[0].id, id);
+}
+
+TEST_F(AlertQueueTest, ReasonsThatAlternateAreOneAlert) {
+  for (int i = 0; i < 40; ++i) {
+    r(1).reason = i % 2 == 0 ? Reason::blocked : Reason::start_in_collision;
+    pass(0.3);
+  }
+  ASSERT_EQ(shown().size(), 1U);
+  EXPECT_EQ(queue_.shown(now_)[0].id, 1U);
+}
+
+TEST_F(AlertQueueTest, AStopWhoseStopperIsNotKnownYetMayBeOnesOwn) {
+  world_.station = "op1";
+  r(1).stopped = true;
+  pass(0.0);
+  pass(AlertQueue::kSettles);
+  EXPECT_TRUE(shown().empty());
+  r(1).stops = {"op1"};
+  pass(10.0);
   EXPECT_TRUE(shown().empty());
 }
 

@@ -99,6 +99,9 @@ Bytes announcement(std::uint8_t from, std::uint16_t port, std::uint8_t network =
                          0,
                          0}});
 }
+Bytes goodbye(std::uint8_t from) {
+  return message(from, {{0x15, 1, 0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 2, 0, 0, 0}});
+}
 Bytes heartbeat(std::uint8_t last, std::uint8_t count) {
   return message(1, {to(2), {0x07, 1, 0, 0, 3, 0xc7, 0, 0,    3, 0xc2, 0, 0,     0, 0, 1,
                              0,    0, 0, 0, 0, 0,    0, last, 0, 0,    0, count, 0, 0, 0}});
@@ -209,6 +212,62 @@ TEST(DiscoveryAssist, APeerThatComesBackAfterItsLeaseIsMetAsANewOne) {
   EXPECT_NE(talk.assist.next(), Duration::max());
   EXPECT_TRUE(talk.sends(own, kPortOfPeer));  // the library's only answer
   EXPECT_EQ(talk.pass(1s), 4U);
+}
+
+TEST(DiscoveryAssist, APeerThatFellSilentIsSearchedUntilItIsHeardAgain) {
+  Talk talk;
+  const Bytes own = announcement(1, 7410);
+  const ParticipantId peer = peek(message(2, {})).source.value();
+  talk.sends(own, 7400);
+  talk.hears(announcement(2, kPortOfPeer));
+  talk.hears(acknack(0));
+  EXPECT_EQ(talk.pass(Discovery::kLease), 0U);
+  talk.assist.dropped(peer, talk.now);
+  EXPECT_EQ(talk.pass(1min), 30U);
+  EXPECT_EQ(talk.repeated.back(), own);
+  talk.hears(announcement(2, kPortOfPeer));
+  talk.hears(acknack(0));
+  EXPECT_EQ(talk.pass(1min), 0U);
+  EXPECT_EQ(talk.assist.next(), Duration::max());
+}
+
+TEST(DiscoveryAssist, NoPeerIsSearchedThatSaidGoodbyeOrCameBackAsAnotherOrNeverKnewUs) {
+  const ParticipantId peer = peek(message(2, {})).source.value();
+  for (const char* how : {"goodbye", "another", "never knew us"}) {
+    Talk talk;
+    talk.sends(announcement(1, 7410), 7400);
+    talk.hears(announcement(2, kPortOfPeer));
+    if (how != std::string("never knew us")) talk.hears(acknack(0));
+    talk.pass(10s);
+    if (how == std::string("goodbye")) talk.hears(goodbye(2));
+    talk.assist.dropped(peer, talk.now);
+    if (how == std::string("another")) {
+      talk.hears(announcement(3, kPortOfPeer));
+      talk.hears(message(3, {to(1)}));
+    }
+    EXPECT_EQ(talk.pass(1min), 0U) << how;
+  }
+}
+
+TEST(DiscoveryAssist, TheSearchOfManyIsBoundedAndEnds) {
+  Talk talk;
+  talk.sends(announcement(1, 7410), 7400);
+  for (std::uint8_t from = 2; from < 102; ++from) {
+    talk.hears(announcement(from, static_cast<std::uint16_t>(8000 + 2 * from)));
+    talk.hears(message(from, {to(1)}));
+    talk.assist.dropped(peek(message(from, {})).source.value(), talk.now);
+  }
+  std::map<std::uint16_t, int> sent;
+  const auto pass = [&](Duration time) {
+    for (const Duration end = talk.now + time; talk.now < end; talk.now += 100ms)
+      if (talk.assist.next() <= talk.now)
+        talk.assist.repeat(talk.now, true, [&](auto, in_addr_t, std::uint16_t port) { ++sent[port]; });
+  };
+  pass(64s);
+  EXPECT_EQ(sent.size(), 64U);
+  for (const auto& [port, count] : sent) EXPECT_EQ(count, 2) << port;
+  pass(Discovery::kSearch);
+  EXPECT_EQ(talk.assist.next(), Duration::max());
 }
 
 TEST(DiscoveryAssist, AnythingHeardRenewsThePeersLease) {

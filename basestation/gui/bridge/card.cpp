@@ -30,30 +30,22 @@ std::string glyph_of(const std::string& platform) {
   return "unknown";
 }
 
-/// Whether a component does not work and does not come by itself.
-bool broken(const std::string& trouble) {
-  return !trouble.ends_with(" starting") && !trouble.ends_with(" waiting");
-}
-
 void headline(Card& card, const Robot& robot) {
-  const auto set = [&](std::string word, Token token, std::string shape, bool needs) {
+  const auto set = [&](std::string word, Token token, std::string shape) {
     card.headline = std::move(word);
     card.headline_token = token;
     card.shape = std::move(shape);
-    card.needs_operator = needs;
   };
   const bool drives = robot.mode != "hold" && !robot.mode.empty();
   const bool waits = drives && !robot.moving_allowed && robot.reason != Reason::none;
-  if (card.contact == Contact::lost) return set("LOST", Token::bad, "square", true);
-  if (robot.stopped || !robot.stops.empty()) return set("STOP", Token::bad, "square", true);
+  if (card.contact == Contact::lost) return set("LOST", Token::bad, "square");
+  if (robot.stopped || !robot.stops.empty()) return set("STOP", Token::bad, "square");
   if (robot.goal_state == GoalState::blocked || robot.reason == Reason::blocked)
-    return set("BLOCKED", Token::bad, "square", true);
-  if (!robot.troubles.empty())
-    return set(upper(robot.mode), Token::warn, "triangle",
-               std::any_of(robot.troubles.begin(), robot.troubles.end(), broken));
-  if (waits) return set(upper(robot.mode) + " WAITS", Token::warn, "triangle", true);
-  if (drives) return set(upper(robot.mode), Token::ok, "disc", false);
-  set(robot.mode.empty() ? "NOT HEARD YET" : upper(robot.mode), Token::none, "ring", false);
+    return set("BLOCKED", Token::bad, "square");
+  if (!robot.troubles.empty()) return set(upper(robot.mode), Token::warn, "triangle");
+  if (waits) return set(upper(robot.mode) + " WAITS", Token::warn, "triangle");
+  if (drives) return set(upper(robot.mode), Token::ok, "disc");
+  set(robot.mode.empty() ? "NOT HEARD YET" : upper(robot.mode), Token::none, "ring");
 }
 
 struct Words {

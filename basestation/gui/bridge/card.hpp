@@ -28,7 +28,6 @@ struct Card {
   std::string goal{};  ///< Distance to the goal.
   std::string age{};
   Contact contact{Contact::live};
-  bool needs_operator{};  ///< It does nothing useful until an operator acts.
   bool operator==(const Card&) const = default;
 };
 

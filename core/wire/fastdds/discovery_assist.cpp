@@ -62,6 +62,10 @@ DiscoveryAssist::Peer& DiscoveryAssist::meet(const ParticipantId& id, const Peer
         return a.second.heard < b.second.heard;
       }));
   }
+  std::erase_if(silent_, [&](const auto& entry) {
+    const bool same_place = entry.second.address == locator.address && entry.second.port == locator.port;
+    return entry.first == id || same_place;
+  });
   Peer& peer = peers_[id];
   peer.address = locator.address, peer.port = locator.port, peer.heard = now;
   return peer;
@@ -74,7 +78,10 @@ void DiscoveryAssist::received(std::span<const std::uint8_t> message, Duration n
   if (*seen.source == own_) return;
   if (seen.writer == kAnnouncingWriter) {
     const auto locator = announced_address(message);
-    if (!locator) return (void)peers_.erase(*seen.source);
+    if (!locator) {
+      silent_.erase(*seen.source);
+      return (void)peers_.erase(*seen.source);
+    }
     Peer& peer = meet(*seen.source, *locator, now);
     if (peer.knows_us || (reachable_ && !reachable_(peer.address))) return;
     peer.announcements_left = Discovery::kAnnounceRetries;
@@ -103,9 +110,27 @@ void DiscoveryAssist::received(std::span<const std::uint8_t> message, Duration n
   }
 }
 
-void DiscoveryAssist::dropped(const ParticipantId& id) {
+void DiscoveryAssist::dropped(const ParticipantId& id, Duration now) {
   const std::lock_guard lock(mutex_);
-  peers_.erase(id);
+  const auto known = peers_.extract(id);
+  if (!known || !known.mapped().knows_us) return;  // It said goodbye, or it never heard us.
+  if (silent_.size() >= kMaxSilent)
+    silent_.erase(std::min_element(silent_.begin(), silent_.end(), [](const auto& a, const auto& b) {
+      return a.second.since < b.second.since;
+    }));
+  if (silent_.empty()) search_at_ = now;
+  silent_[id] = {known.mapped().address, known.mapped().port, now};
+}
+
+void DiscoveryAssist::search(Duration now, std::vector<Out>& out) {
+  std::erase_if(silent_, [&](const auto& entry) { return now - entry.second.since > Discovery::kSearch; });
+  if (silent_.empty() || search_at_ > now) return;
+  const auto count = static_cast<Duration::rep>(silent_.size());
+  search_at_ = now + std::max(Discovery::kSearchPeriod / count, Discovery::kSearchStep);
+  auto next = silent_.upper_bound(searched_last_);
+  if (next == silent_.end()) next = silent_.begin();
+  searched_last_ = next->first;
+  if (!announcement_.empty()) out.push_back({announcement_, next->second.address, next->second.port});
 }
 
 void DiscoveryAssist::announce(Duration now, std::vector<Out>& out) {
@@ -150,6 +175,7 @@ void DiscoveryAssist::repeat(Duration now, bool link_idle, const Send& send) {
   {
     const std::lock_guard lock(mutex_);
     announce(now, out);
+    search(now, out);
     for (auto& [id, peer] : peers_) repeat_heartbeats(peer, now, link_idle, out);
   }
   for (const Out& one : out) send(one.message, one.address, one.port);
@@ -162,7 +188,7 @@ ParticipantId DiscoveryAssist::own() const {
 
 Duration DiscoveryAssist::next() const {
   const std::lock_guard lock(mutex_);
-  Duration soonest = Duration::max();
+  Duration soonest = silent_.empty() ? Duration::max() : search_at_;
   for (const auto& [id, peer] : peers_) {
     soonest = std::min(soonest, peer.announce_at);
     for (const auto& [writer, beat] : peer.beats) soonest = std::min(soonest, beat.at);

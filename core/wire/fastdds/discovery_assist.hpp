@@ -21,6 +21,7 @@ namespace adit::wire {
 /// missing endpoint once a second; when either message is lost, matching waits for the next announcement.
 /// This class inspects all datagrams that pass the sockets, and
 /// - repeats our announcement to each peer that was heard and does not show that it heard us;
+/// - searches a peer that fell silent: announces us to it until it is heard again;
 /// - repeats a discovery heartbeat that is not acknowledged, with a count that the library would not use;
 /// - withholds unicast announcements to peers that know us, as they receive the same by multicast. A peer
 /// that was silent for Discovery::kLease counts as new when it returns, because the library has dropped it by
@@ -39,8 +40,9 @@ class DiscoveryAssist {
   bool sent(std::span<std::uint8_t> message, in_addr_t address, std::uint16_t port, Duration now);
   /// Processes a datagram received on any port.
   void received(std::span<const std::uint8_t> message, Duration now);
-  /// Forgets a participant that the library dropped: when it returns it counts as new.
-  void dropped(const ParticipantId& id);
+  /// Forgets a participant that the library dropped: when it returns it counts as new. One that knew us and
+  /// did not say goodbye is searched.
+  void dropped(const ParticipantId& id, Duration now);
   /// Sends the repetitions that are due. `link_idle`: no other datagram is queued; otherwise heartbeats are
   /// deferred.
   void repeat(Duration now, bool link_idle, const Send& send);
@@ -50,7 +52,7 @@ class DiscoveryAssist {
   Duration next() const;
 
  private:
-  static constexpr std::size_t kMaxPeers = 256;
+  static constexpr std::size_t kMaxPeers = 256, kMaxSilent = 64;
   /// Largest number of repeated announcements per second, to all peers together; the rest is deferred. Ten
   /// robots and ten stations that start together need 95.
   static constexpr int kMaxAnnouncements = 128;
@@ -71,6 +73,12 @@ class DiscoveryAssist {
     std::map<std::uint32_t, Beat> beats{};  ///< Unacknowledged heartbeats of our discovery writers.
   };
   using Peers = std::map<ParticipantId, Peer>;
+  /// A peer that is searched.
+  struct Silent {
+    in_addr_t address{};
+    std::uint16_t port{};
+    Duration since{};
+  };
   struct Out {
     std::vector<std::uint8_t> message{};
     in_addr_t address{};
@@ -80,6 +88,7 @@ class DiscoveryAssist {
   /// Returns the peer that announced itself at `locator`, created if it is new.
   Peer& meet(const ParticipantId& id, const PeerAddress& locator, Duration now);
   void announce(Duration now, std::vector<Out>& out);
+  void search(Duration now, std::vector<Out>& out);
   void repeat_heartbeats(Peer& peer, Duration now, bool link_idle, std::vector<Out>& out);
 
   std::function<bool(in_addr_t)> reachable_{};
@@ -87,6 +96,9 @@ class DiscoveryAssist {
   ParticipantId own_{};
   std::vector<std::uint8_t> announcement_{};
   Peers peers_{};
+  std::map<ParticipantId, Silent> silent_{};  // At most kMaxSilent.
+  ParticipantId searched_last_{};             // The next round continues after it.
+  Duration search_at_{};
   ParticipantId announced_last_{};  // Last receiver; the next round continues after it.
   Duration second_{};               // Start of the second in which announcements are counted.
   int announced_{};

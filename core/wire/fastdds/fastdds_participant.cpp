@@ -92,7 +92,8 @@ class DiscoveryListener final : public dds::DomainParticipantListener {
     const bool gone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
                       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
     if (gone) {
-      context_->assist.dropped(id);
+      context_->assist.dropped(id, std::chrono::steady_clock::now().time_since_epoch());
+      if (context_->repeats) context_->repeats->wake();
       endpoints_.lost_all(id);
     }
     const std::lock_guard lock(mutex_);

@@ -29,7 +29,7 @@ constexpr std::uint32_t kParticipantsPerHost = 16;  // Ports tried at an address
 constexpr std::uint32_t kSendBuffer = 212992;       // Bytes, the default of Linux.
 /// The library reserves room in each message for statistics, 60 bytes that are removed again, and for a
 /// heartbeat, 32 bytes, which hardly ever goes with a fragment. With 20 of these, an endpoint announcement
-/// fits one frame of 500 bytes.
+/// with a short name fits one frame of 500 bytes.
 constexpr std::uint32_t kNeverSent = 60 + 20;
 /// The longest announcement of an endpoint (longest topic and type, a name of 32 bytes as partition, one
 /// address) with what kNeverSent is for, bytes. The library does not repair an announcement that needs two

@@ -67,18 +67,42 @@ void ParticipantState::announce() {
 
 void ParticipantState::check_leases() {
   if (stopped) return;
-  std::vector<int> silent;
+  const Duration now = core->scheduler.elapsed();
+  std::vector<int> over;
   for (const auto& [peer, state] : peers) {
-    if (core->scheduler.elapsed() - state.heard > Discovery::kLease) silent.push_back(peer);
+    if (now - state.heard > Discovery::kLease) over.push_back(peer);
   }
-  for (const int peer : silent) drop(peer);
+  constexpr std::size_t kMaxSilent = 64;
+  for (const int peer : over) {
+    const Peer& state = peers.at(peer);
+    if (state.knows_us && silent.size() < kMaxSilent) silent[peer] = {state.machine, now, {}};
+    drop(peer);
+  }
+  search(now);
   core->after(1s, [weak = weak_from_this()] {
     if (const auto self = weak.lock()) self->check_leases();
   });
 }
 
+void ParticipantState::search(Duration now) {
+  std::erase_if(silent, [&](const auto& entry) { return now - entry.second.since > Discovery::kSearch; });
+  int left = static_cast<int>(1s / Discovery::kSearchStep);  // This is called once a second.
+  for (auto& [peer, state] : silent) {
+    if (now - state.announced < Discovery::kSearchPeriod || left-- <= 0) continue;
+    state.announced = now;
+    announce_to(peer);
+  }
+}
+
 void ParticipantState::on_announcement(int from) {
   const auto [peer, is_new] = peers.try_emplace(from);
+  if (is_new) {
+    if (const ParticipantState* there = peer_participant(from)) peer->second.machine = there->machine;
+    // A program that was started again has the address of the one before.
+    std::erase_if(silent, [&](const auto& entry) {
+      return entry.first == from || entry.second.machine == peer->second.machine;
+    });
+  }
   peer->second.heard = core->scheduler.elapsed();
   if (!peer->second.knows_us) {
     peer->second.announcements_left = Discovery::kAnnounceRetries;

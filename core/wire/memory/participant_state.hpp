@@ -146,6 +146,7 @@ struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
     bool knows_us{};           ///< It sent something to us by unicast.
     int announcements_left{};  ///< Announcements left to send to it while it does not know us.
     bool announcing{};
+    std::string machine{};
     std::map<int, TopicOf> writers{}, readers{};  ///< As announced, by entity.
     std::string incompatible{};                   ///< As in ParticipantEvent.
   };
@@ -153,6 +154,8 @@ struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
   void start();
   void announce();
   void check_leases();
+  /// Announces us to peers that fell silent, as DiscoveryAssist does live.
+  void search(Duration now);
   void on_announcement(int from);
   /// Repeats our announcement to a peer until it shows that it received one.
   void announce_again(int peer);
@@ -189,6 +192,12 @@ struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
   KnownTopics known_topics{};
   int next_entity{3};  ///< 1 and 2 are discovery's own writer and reader.
   std::map<int, Peer> peers{};
+  /// A peer whose lease ended without a goodbye, as DiscoveryAssist searches it live.
+  struct Silent {
+    std::string machine{};
+    Duration since{}, announced{};
+  };
+  std::map<int, Silent> silent{};  ///< By node; at most 64.
   std::map<int, std::shared_ptr<WriterState>> writers{};
   std::map<int, std::shared_ptr<ReaderState>> readers{};
   std::shared_ptr<WriterState> discovery_writer{};
