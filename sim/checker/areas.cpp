@@ -15,7 +15,8 @@ constexpr Duration kBraking = 1s;
 constexpr double kBorderSigmas = 3.0;
 /// Of the time to brake when the ground shrinks in front of a robot that moves: factor, and time to react, s.
 constexpr double kBrakingFactor = 1.1, kReactionTime = 0.25;
-/// A body that was nearer than that may get so much nearer, or farther out, on its way back, m.
+/// A body that was nearer than that may get its middle so much nearer, or farther out, on its way back, m. A
+/// turn on the spot takes its corners farther.
 constexpr double kSlack = 0.15;
 
 /// Rule 10: areas are hard limits. In an autonomous mode no part of the body leaves the ground that the
@@ -90,22 +91,29 @@ class AreasAreHard : public Rule {
                   pose.y);
     if (!within_ && was_within) report_violation(text + mode);
     if (!robot.facts().knows_its_place) return;
-    const double clearance = areas_.clearance(body, height_);
-    kept_ = std::max(kept_.value_or(clearance), clearance);
-    const double limit = *kept_ >= needed_ ? needed_ : *kept_ - kSlack;
+    const std::array<Eigen::Vector2d, 1> middle{pose.position()};
+    Clearance is{areas_.clearance(body, height_), areas_.clearance(middle, height_)};
+    kept_ = kept_ ? Clearance{std::max(kept_->body, is.body), std::max(kept_->middle, is.middle)} : is;
+    const bool kept = kept_->body >= needed_;
+    const double clearance = kept ? is.body : is.middle;
+    const double limit = kept ? needed_ : kept_->middle - kSlack;
     if (clearance >= limit || (!within_ && was_within)) return;
-    std::snprintf(text, sizeof text, "%.2f m from forbidden ground, where at least %.2f m were due, in ",
-                  clearance, limit);
+    std::snprintf(text, sizeof text, "%s %.2f m from forbidden ground, where at least %.2f m were due, in ",
+                  kept ? "the body" : "its middle", clearance, limit);
     report_violation(text + mode);
-    kept_ = clearance;  // Reported once.
+    kept_ = is;  // Reported once.
   }
 
   nav::AreaSet areas_{};
   double height_{};
   bool within_{true};
-  Duration braked_by_{};          ///< A robot that moved when the ground shrank may need so long to brake.
-  double needed_{};               ///< Distance from forbidden ground by the stated deviation, m.
-  std::optional<double> kept_{};  ///< Greatest distance since the mode began or more was needed, m.
+  Duration braked_by_{};  ///< A robot that moved when the ground shrank may need so long to brake.
+  double needed_{};       ///< Distance from forbidden ground by the stated deviation, m.
+  /// Distances from forbidden ground, m; negative on it.
+  struct Clearance {
+    double body{}, middle{};
+  };
+  std::optional<Clearance> kept_{};  ///< Greatest ones since the mode began or more was needed.
 };
 
 }  // namespace
