@@ -96,13 +96,7 @@ Priority AlertQueue::add(const Notice& notice, const World& world, double now) {
   const double at = now - std::max(notice.age, 0.0);
   if (Alert* known = find(notice.robot, notice.code)) {
     if (!known->from_state) ++known->count;
-    known->from_state = false;
-    known->last = std::max(known->last, at);
-    known->text = notice.text;
-    known->reason = notice.reason;
-    known->seen = false;
-    known->hidden_until = 0.0;
-    known->priority = std::min(known->priority, priority);
+    renew(*known, notice, std::min(known->priority, priority), at);
     return priority;
   }
   if (Alert* covering =
@@ -112,14 +106,7 @@ Priority AlertQueue::add(const Notice& notice, const World& world, double now) {
   const Ends ends = row ? row->ends : Ends::seen;
   // The state showed it first: it stays the same alert.
   if (Alert* shown = ends < Ends::seen ? find_from_state(notice.robot, ends) : nullptr) {
-    shown->code = notice.code;
-    shown->text = notice.text;
-    shown->reason = notice.reason;
-    shown->priority = priority;
-    shown->last = std::max(shown->last, at);
-    shown->from_state = false;
-    shown->seen = false;
-    shown->hidden_until = 0.0;
+    renew(*shown, notice, priority, at);
     return priority;
   }
   insert({.priority = priority,
@@ -131,6 +118,17 @@ Priority AlertQueue::add(const Notice& notice, const World& world, double now) {
           .first = at,
           .last = at});
   return priority;
+}
+
+void AlertQueue::renew(Alert& alert, const Notice& notice, Priority priority, double at) {
+  alert.code = notice.code;
+  alert.text = notice.text;
+  alert.reason = notice.reason;
+  alert.priority = priority;
+  alert.last = std::max(alert.last, at);
+  alert.from_state = false;
+  alert.seen = false;
+  alert.hidden_until = 0.0;
 }
 
 void AlertQueue::insert(Alert alert) {

@@ -80,6 +80,8 @@ class AlertQueue {
   /// Takes the present conditions of a robot, and confirms and renews the alerts that are about them.
   void take_conditions(const Robot& robot, const std::string& station, double now);
   void add_condition(const Robot& robot, const Settling& settling);
+  /// Makes an alert that is there that of a new notification, and shows it again.
+  static void renew(Alert& alert, const Notice& notice, Priority priority, double at);
   void insert(Alert alert);
   void close(const std::string& robot, const std::string& closing, double now);
   void gather(const Alert& newest);

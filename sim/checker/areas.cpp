@@ -13,8 +13,6 @@ namespace {
 constexpr Duration kBraking = 1s;
 /// Distance from the border in standard deviations of the place.
 constexpr double kBorderSigmas = 3.0;
-/// Of the time to brake when the ground shrinks in front of a robot that moves: factor, and time to react, s.
-constexpr double kBrakingFactor = 1.1, kReactionTime = 0.25;
 /// A body that was nearer than that may get its middle so much nearer, or farther out, on its way back, m. A
 /// turn on the spot takes its corners farther.
 constexpr double kSlack = 0.15;
@@ -53,8 +51,7 @@ class AreasAreHard : public Rule {
     // Both can shrink the ground in front of the robot.
     if (command.verb != Verb::area_add && command.verb != Verb::area_remove) return;
     const Twist2& v = robot.truth().velocity;
-    const double braking = std::hypot(v.vx, v.vy) / robot.facts().max_acceleration;
-    braked_by_ = robot.now() + from_seconds(braking * kBrakingFactor + kReactionTime);
+    braked_by_ = robot.now() + rest_limit(std::hypot(v.vx, v.vy) / robot.facts().max_acceleration);
   }
 
   void add(const CommandHeard& command) {

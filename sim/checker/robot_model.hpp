@@ -19,6 +19,10 @@ inline constexpr Duration kGivingBack{1s};
 /// A component that failed is back, or the whole agent was started again, within this.
 inline constexpr Duration kRecovery{2500ms};
 
+/// Returns the time within which a body must be at rest that brakes for `braking` seconds with its full
+/// acceleration: a tenth more, and the time until the driver has received zero and the body begins to brake.
+inline Duration rest_limit(double braking) { return from_seconds(braking * 1.1 + 0.25); }
+
 /// What the outsider concludes from all it has seen of one robot: the authority that follows from the
 /// answers the robot gave, who is heard, the mode it last published, the last samples.
 class RobotModel {

@@ -13,9 +13,6 @@ constexpr double kRestingTurn = 0.02;    ///< A body that turns slower is at res
 constexpr std::size_t kMaxLatches = 16;  ///< Number of stops that an AuthorityStatus has room for.
 /// The operators must be notified within this time of a reset by override.
 constexpr Duration kNotificationTimeout = 200ms;
-/// Margin on the time that the body needs to brake with its full acceleration: a tenth of it, and the time
-/// until the driver has received zero and the body begins to brake, s.
-constexpr double kBrakingFactor = 1.1, kReactionTime = 0.25;
 
 /// Checks rule 4. A stop needs no authority. A stop is a latch: while one is set, the driver receives zero,
 /// and the robot comes to rest in the time that its brakes need.
@@ -79,8 +76,7 @@ class Stop : public Rule {
     const Twist2& v = robot.truth().velocity;
     const double braking_time = std::hypot(v.vx, v.vy) / robot.facts().max_acceleration;
     const double turn_braking_time = std::abs(v.wz) / robot.facts().max_turn_acceleration;
-    rest_deadline_ = robot.now() +
-                     from_seconds(std::max(braking_time, turn_braking_time) * kBrakingFactor + kReactionTime);
+    rest_deadline_ = robot.now() + rest_limit(std::max(braking_time, turn_braking_time));
     if (robot.disturbed()) rest_deadline_ += kRecovery;
     motion_reported_ = false;
   }
