@@ -20,12 +20,16 @@ namespace {
 using namespace adit;
 using namespace adit::sim;
 
+constexpr double kStanding = 600.0;  ///< At the end of the row `level`, s.
+
 /// Outcome of one drive.
 struct Outcome {
   std::vector<StampedPose> truth{}, estimate{};
   std::vector<double> ms{};
   double way{};                    ///< m
   double largest{};                ///< Error of the position, m.
+  double largest_z{};              ///< Error of the height, m.
+  double standing_z{};             ///< Largest less smallest one while the robot stands at the end, m.
   Pose3 end_error{};               ///< T_truth_estimate at the end.
   std::size_t within{}, judged{};  ///< Poses whose squared normalised error is below the 95 % bound.
   std::vector<double> nees{};      ///< Squared normalised error of x, y and yaw.
@@ -49,7 +53,12 @@ class Locating : public DriveSink {
     runner_.finish();
     out_.way = truth_.distance();
     if (steps_.empty()) return out_;
-    const Pose3 T_world_odom = truth_.truth_at(steps_.front().stamp) * steps_.front().pose.inverse();
+    std::vector<std::pair<double, double>> heights;  // s, m
+    // Both frames are level.
+    const Pose3 first = truth_.truth_at(steps_.front().stamp), stated = steps_.front().pose;
+    const Eigen::Quaterniond turn(
+        Eigen::AngleAxisd(wrap_angle(first.yaw() - stated.yaw()), Eigen::Vector3d::UnitZ()));
+    const Pose3 T_world_odom{first.position - turn * stated.position, turn};
     for (const Located& step : steps_) {
       const Pose3 truth = truth_.truth_at(step.stamp), estimate = T_world_odom * step.pose;
       const double seconds = static_cast<double>(step.stamp - kDriveStart) * 1e-9;
@@ -57,6 +66,8 @@ class Locating : public DriveSink {
       out_.estimate.push_back({seconds, estimate});
       const Eigen::Vector3d error = estimate.position - truth.position;
       out_.largest = std::max(out_.largest, error.norm());
+      out_.largest_z = std::max(out_.largest_z, std::abs(error.z()));
+      heights.emplace_back(seconds, error.z());
       // Of x, y and yaw, in odom. The truth is that of the body, while lidar and clock are off by up to 1 cm
       // and 0.3 degrees: so far the first pose, which ties both frames, is itself wrong.
       Eigen::Vector3d off;
@@ -74,6 +85,11 @@ class Locating : public DriveSink {
       out_.nees.push_back(nees);
       out_.end_error = truth.inverse() * estimate;
     }
+    double low = heights.back().second, high = low;
+    for (const auto& [seconds, height] : heights)
+      if (seconds > heights.back().first - (kStanding - 10.0))
+        low = std::min(low, height), high = std::max(high, height);
+    out_.standing_z = high - low;
     return out_;
   }
 
@@ -181,6 +197,23 @@ DriveSpec dusty(std::uint64_t seed, bool dust) {
   return spec;
 }
 
+/// A ring of four smooth level corridors, 80 m and 60 m long, driven round once; then the robot stands.
+DriveSpec level(std::uint64_t seed) {
+  constexpr double kIn = 1.3, kOut = 1.6, kLong = 80.0, kShort = 60.0, kHigh = 3.0;
+  GeneratedWorld ring;
+  for (const double y : {-kOut, kShort + kIn})
+    ring.boxes.push_back({-kOut, kLong + kOut, y, y + 0.3, 0, kHigh});
+  for (const double x : {-kOut, kLong + kIn})
+    ring.boxes.push_back({x, x + 0.3, -kOut, kShort + kOut, 0, kHigh});
+  for (const double y : {kIn, kShort - kOut}) ring.boxes.push_back({kIn, kLong - kIn, y, y + 0.3, 0, kHigh});
+  for (const double x : {kIn, kLong - kOut}) ring.boxes.push_back({x, x + 0.3, kIn, kShort - kIn, 0, kHigh});
+  DriveSpec spec = base_spec(ring, "wheeled", seed);
+  for (const Eigen::Vector2d& place : {Eigen::Vector2d(80, 0), {80, 60}, {0, 60}, {0, 0}})
+    spec.steps.emplace_back(DriveTo{place, 2.0});
+  spec.steps.emplace_back(StandFor{kStanding});
+  return spec;
+}
+
 /// Lidars of more beams, on one side of the streets.
 DriveSpec dense(std::uint64_t seed, int rings, int columns) {
   DriveSpec spec = base_spec(generate_world("blocks", seed).value(), "wheeled", seed);
@@ -225,9 +258,9 @@ double ate_percent(const Outcome& outcome) {
 int main(int argc, char** argv) {
   CLI::App app{"Lidar-inertial odometry on simulated drives.", "bench_perception"};
   int seeds = 1;
-  std::vector<std::string> rows{"ate", "tunnel", "turns", "stairs", "dense", "dust"};
+  std::vector<std::string> rows{"ate", "tunnel", "level", "turns", "stairs", "dense", "dust"};
   app.add_option("--seeds", seeds, "drives of each row")->capture_default_str()->check(CLI::Range(1, 1000));
-  app.add_option("--rows", rows, "of ate tunnel turns stairs dense dust")->capture_default_str();
+  app.add_option("--rows", rows, "of ate tunnel level turns stairs dense dust")->capture_default_str();
   std::string clouds;
   std::vector<std::string> peers;
   app.add_option("--clouds", clouds, "folder of real clouds for the row of the street");
@@ -259,6 +292,17 @@ int main(int argc, char** argv) {
                    result ? fmt::format("end error along the axis {:.3f} % (must 0.5)",
                                         100.0 * std::abs(result->end_error.position.x()) / result->way)
                           : "");
+      count(result);
+    }
+    if (wanted("level")) {
+      const auto result = run(level(seed));
+      report.print(
+          "level", result,
+          result ? fmt::format("z off by {:.2f} m at most, {:.3f} % (must 0.2), {:.3f} m in ten minutes of "
+                               "standing (must 0.01), end {:.2f} m",
+                               result->largest_z, 100 * result->largest_z / result->way, result->standing_z,
+                               result->end_error.position.norm())
+                 : "");
       count(result);
     }
     if (wanted("turns")) {

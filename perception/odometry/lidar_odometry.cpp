@@ -25,7 +25,6 @@ constexpr double kInsertWay = 0.2,
 constexpr int kFirstClouds = 10;        ///< All of them enter the map.
 constexpr double kPlanarHeight = 0.15;  ///< A planar lidar's point stands for a wall of twice this, m.
 constexpr double kLevelRate = 0.003;    ///< How fast the frame is levelled, rad/s.
-constexpr double kLevelSigma = 0.0035;  ///< Gravity is known well enough to level by, rad.
 constexpr std::uint64_t kImuPatience = 2'000'000'000;  ///< Wait for the first sample of an IMU, ns.
 
 /// Position and rotation by which the registered pose differs from the state.
@@ -317,10 +316,7 @@ void LidarOdometry::report() {
 }
 
 void LidarOdometry::level(double dt) {
-  if (!params_.motion.has_imu) return;
   const S& s = filter_.state();
-  const double sigma = std::sqrt(s.P.diagonal().segment<2>(S::kG).maxCoeff()) / kStandardGravity;
-  if (sigma > kLevelSigma) return;
   const Eigen::Vector3d up = T_odom_local_.orientation * -s.gravity_vector() / kStandardGravity;
   const Eigen::Vector3d off = up.cross(Eigen::Vector3d::UnitZ());
   const double angle = off.norm();

@@ -17,7 +17,11 @@ constexpr double kMaxSlip = 1.5;                          ///< A slip that lasts
 constexpr double kStillSpeed = 0.005, kStillTurn = 0.01;  ///< Slower is rest, m/s, rad/s.
 constexpr double kStillGyro = 0.03;                       ///< With its bias removed, rad/s.
 constexpr double kRestSpeed = 0.005, kRestTurn = 0.002;   ///< Standard deviations at rest, m/s, rad/s.
-constexpr double kForgetScale = 200.0;                    ///< Way over which the scale may change, m.
+/// Roll and pitch by the driver's attitude filter: their standard deviation, rad, and the time over which an
+/// error keeps its value, s. Half a degree is what makers of attitude sensors state for a body that moves.
+constexpr double kTiltSigma = 0.0087, kTiltTime = 2.0;
+constexpr double kLeastTilt = 1e-6;     ///< Less is no measurement, rad.
+constexpr double kForgetScale = 200.0;  ///< Way over which the scale may change, m.
 
 double to_seconds(std::uint64_t later, std::uint64_t earlier) {
   return static_cast<double>(static_cast<std::int64_t>(later - earlier)) * 1e-9;
@@ -53,7 +57,7 @@ void MotionFilter::start(std::uint64_t stamp, const Pose3& T_odom_base, const Ei
   set(S::kG, 2, tilt_sigma * kStandardGravity);
   set(S::kS, 1, params_.wheel_scale);
   pending_ = {};
-  wheels_used_ = stamp;
+  wheels_used_ = attitude_used_ = stamp;
   still_for_ = at_rest ? 1.0 : 0.0;
   slipping_for_ = 0.0;
   gyro_.setZero();
@@ -61,7 +65,11 @@ void MotionFilter::start(std::uint64_t stamp, const Pose3& T_odom_base, const Ei
 }
 
 void MotionFilter::add(const ImuSample& sample) { insert_sorted(imu_, sample, kMaxSamples); }
-void MotionFilter::add(const BodyMotion& sample) { insert_sorted(wheels_, sample, kMaxSamples); }
+void MotionFilter::add(const BodyMotion& sample) {
+  const Eigen::Vector3d up = sample.pose.orientation.conjugate() * Eigen::Vector3d::UnitZ();
+  if (up.head<2>().norm() > kLeastTilt) leans_ = true;
+  insert_sorted(wheels_, sample, kMaxSamples);
+}
 
 bool MotionFilter::covers(std::uint64_t stamp) const {
   if (params_.has_imu && (imu_.empty() || imu_.back().stamp < stamp)) return false;
@@ -79,6 +87,7 @@ Eigen::Vector3d MotionFilter::velocity() const {
 void MotionFilter::advance(std::uint64_t stamp) {
   while (state_.stamp < stamp) step(std::min(stamp, state_.stamp + kStep));
   propagate_covariance();
+  use_attitude();
   // Samples are needed until the next advance() for interpolation, and no longer.
   while (imu_.size() > 1 && imu_[1].stamp <= state_.stamp) imu_.pop_front();
   while (wheels_.size() > 1 && wheels_[1].stamp <= std::min(wheels_used_, state_.stamp)) wheels_.pop_front();
@@ -291,6 +300,28 @@ void MotionFilter::use_wheels(std::uint64_t from, std::uint64_t to) {
   if (!params_.flies) measured.z() = 0.0;
   const double gate = slipping_for_ < kMaxSlip ? kSlipGate : 1e9;
   slipping_for_ = update(H, measured - expected, sigma.cwiseAbs2(), gate) ? 0.0 : slipping_for_ + dt;
+}
+
+void MotionFilter::use_attitude() {
+  if (!leans_ || state_.stamp <= attitude_used_) return;
+  const auto driver = wheels_at(state_.stamp);
+  if (!driver) return;
+  const double dt = std::min(kTiltTime, to_seconds(state_.stamp, attitude_used_));
+  attitude_used_ = state_.stamp;
+  if (params_.has_imu && !imu_.empty()) return;  // Its accelerometer knows better.
+  // The driver's attitude is what an accelerometer would measure that feels no motion.
+  const Eigen::Matrix3d R_inverse = state_.rotation.conjugate().toRotationMatrix();
+  const Eigen::Vector3d expected = -(R_inverse * state_.gravity_vector());
+  const Eigen::Vector3d measured =
+      kStandardGravity * (driver->orientation.conjugate() * Eigen::Vector3d::UnitZ());
+  Eigen::Matrix<double, 3, S::kSize> H = Eigen::Matrix<double, 3, S::kSize>::Zero();
+  H.block<3, 3>(0, S::kR) = skew(expected);
+  H.block<3, 3>(0, S::kBa).setIdentity();
+  H.block<3, 2>(0, S::kG) = -R_inverse.leftCols<2>();
+  // Errors that keep their value say the same again: their mean is that of one for each two times it.
+  const double variance = std::pow(kTiltSigma * kStandardGravity, 2) * (1.0 + 2.0 * kTiltTime / dt);
+  // The length of gravity says nothing.
+  update(H, measured - expected - state_.accel_bias, {variance, variance, 1e3}, 1e9);
 }
 
 bool MotionFilter::update(const Eigen::Matrix<double, 3, S::kSize>& H, const Eigen::Vector3d& residual,

@@ -100,6 +100,8 @@ class MotionFilter {
   std::optional<ImuSample> imu_mean(std::uint64_t from, std::uint64_t to) const;
   std::optional<Pose3> wheels_at(std::uint64_t stamp) const;
   void use_wheels(std::uint64_t from, std::uint64_t to);
+  /// Corrects tilt and gravity by the roll and pitch that the driver's odometry states.
+  void use_attitude();
   /// Corrects the state by three measured numbers. False, and nothing is done: farther than `gate` (squared
   /// standard deviations in any of them) from what is expected.
   bool update(const Eigen::Matrix<double, 3, MotionState::kSize>& H, const Eigen::Vector3d& residual,
@@ -112,6 +114,8 @@ class MotionFilter {
   std::deque<BodyMotion> wheels_{};
   Eigen::Vector3d gyro_{0, 0, 0};  ///< Turn rate over the last step, body axes, rad/s.
   std::uint64_t wheels_used_{};    ///< Until then the wheels corrected the velocity.
+  std::uint64_t attitude_used_{};  ///< Until then the driver's attitude corrected the tilt.
+  bool leans_{};                   ///< The driver states roll and pitch; a planar one states zero.
   double still_for_{};             ///< s
   double slipping_for_{};          ///< s
   /// The motion by which the covariance has not been moved yet.

@@ -9,7 +9,7 @@ namespace adit::perception {
 namespace {
 
 constexpr float kFacing = 0.5f;    ///< Cosine between a plane's normal and a direction that it determines.
-constexpr float kTurning = 0.35f;  ///< The same for an axis: share of the arm that is a lever.
+constexpr float kTurning = 0.35f;  ///< The same for an axis: between the normal and the way of the point.
 constexpr int kLeastFacing = 15;   ///< Fewer residuals may all be on planes with wrong normals.
 constexpr double kUnknown = 1e3;   ///< Standard deviation where nothing is known, m or rad.
 
@@ -44,9 +44,11 @@ Localizability judge(const Eigen::Matrix<double, 6, 6>& information,
         along += each.weight * facing * facing;
         ++facing_count;
       }
-      const Eigen::Vector3f lever = each.arm.cross(each.normal);
-      const float turning = lever.dot(u);
-      if (turning * turning > kTurning * kTurning * each.arm.squaredNorm()) {
+      // How far the point moves towards the plane, per its way about the axis: the part of the arm along the
+      // axis moves nothing.
+      const Eigen::Vector3f moves = u.cross(each.arm);
+      const float turning = each.normal.dot(moves);
+      if (turning * turning > kTurning * kTurning * moves.squaredNorm()) {
         about += each.weight * turning * turning;
         ++turning_count;
       }

@@ -18,14 +18,15 @@ constexpr double kMoved = 0.02, kTurned = 0.0035;  ///< Motion after which point
 constexpr double kSettledT = 1e-3, kSettledR = 1.7e-4;  ///< The search ends, m, rad.
 
 /// Removes the directions that the cloud does not determine well: an error of a few planes there is no noise,
-/// and the prior by wheels and inertia is better.
+/// and the prior by wheels and inertia is better. A turn that is known a little remains: without it roll and
+/// pitch follow the noise of the driver's attitude where floor and ceiling are far away.
 Matrix6 remap(const Localizability& found, const Eigen::Matrix3d& R) {
   Matrix6 keep = Matrix6::Identity();
   for (int axis = 0; axis < 3; ++axis) {
     const auto n = static_cast<std::size_t>(axis);
     const Eigen::Vector3d v = found.axes_t.col(axis), u = R.transpose() * found.axes_r.col(axis);
     if (found.t[n] != Observability::strong) keep.block<3, 3>(0, 0) -= v * v.transpose();
-    if (found.r[n] != Observability::strong) keep.block<3, 3>(3, 3) -= u * u.transpose();
+    if (found.r[n] == Observability::none) keep.block<3, 3>(3, 3) -= u * u.transpose();
   }
   return keep;
 }

@@ -13,12 +13,11 @@ namespace adit::perception {
 const std::vector<Eigen::Vector3f>& Thinner::thin(std::span<const Eigen::Vector3f> points) {
   // At most half full.
   const std::size_t slots = std::bit_ceil(std::max<std::size_t>(1024, 2 * points.size()));
-  if (seen_.size() < slots) {
-    seen_.assign(slots, 0);
-    cloud_.assign(slots, 0);
+  if (voxels_.size() < slots) {
+    voxels_.assign(slots, {});
     number_ = 0;
   }
-  const std::size_t mask = seen_.size() - 1;
+  const std::size_t mask = voxels_.size() - 1;
   const float nearest = params_.min_range * params_.min_range,
               farthest = params_.max_range * params_.max_range;
   const bool first = edge_ == 0.0f;
@@ -27,6 +26,7 @@ const std::vector<Eigen::Vector3f>& Thinner::thin(std::span<const Eigen::Vector3
   for (int round = 0; round < (first ? 4 : 1); ++round) {
     ++number_;
     thinned_.clear();
+    points_.clear();
     const float scale = 1.0f / edge_;
     for (const Eigen::Vector3f& p : points) {
       const float range = p.squaredNorm();
@@ -36,11 +36,16 @@ const std::vector<Eigen::Vector3f>& Thinner::thin(std::span<const Eigen::Vector3
       const std::uint64_t key = voxel_key(index(p.x()), index(p.y()), index(p.z()));
       std::uint64_t hash = (key ^ key >> 32) * 0x9e3779b97f4a7c15ULL;
       std::size_t at = (hash ^ hash >> 29) & mask;
-      while (cloud_[at] == number_ && seen_[at] != key) at = (at + 1) & mask;
-      if (cloud_[at] == number_) continue;
-      cloud_[at] = number_;
-      seen_[at] = key;
-      thinned_.push_back(p);
+      while (voxels_[at].cloud == number_ && voxels_[at].key != key) at = (at + 1) & mask;
+      if (voxels_[at].cloud != number_) {
+        voxels_[at] = {key, number_, static_cast<std::uint32_t>(thinned_.size())};
+        thinned_.push_back(p);
+        points_.push_back(1);
+        continue;
+      }
+      const std::uint32_t n = voxels_[at].at, count = ++points_[n];
+      const std::uint64_t draw = (hash + count) * 0xd1342543de82ef95ULL >> 32;
+      if (draw * count >> 32 == 0) thinned_[n] = p;  // With probability 1 / count.
     }
     if (round + 1 == (first ? 4 : 1)) break;
     const float ratio = static_cast<float>(thinned_.size()) / static_cast<float>(params_.wanted);

@@ -51,6 +51,26 @@ TEST(Observability, ASmoothCorridorLeavesItsAxisOpen) {
   for (const Observability r : found.r) EXPECT_EQ(r, Observability::strong);
 }
 
+TEST(Observability, FarFloorAndCeilingDetermineTheRollInACorridor) {
+  // They are 10 to 28 m ahead and behind, 1.3 m beside the axis at most: a long arm, of which little is a
+  // lever.
+  Residuals r = corridor_residuals(true);
+  r.all.clear();
+  r.information.setZero();
+  Random random(8);
+  for (int n = 0; n < 600; ++n) {
+    const double x = (n % 2 == 0 ? 1 : -1) * random.uniform(10, 28), y = random.uniform(-1.3, 1.3);
+    r.add({x, y, -0.5}, Eigen::Vector3d::UnitZ());
+    r.add({x, y, 2.5}, Eigen::Vector3d::UnitZ());
+    r.add({x, 1.3, random.uniform(-0.4, 0.4)}, Eigen::Vector3d::UnitY());
+  }
+  const Localizability found = r.judged();
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(found.axes_r(0, axis)) > 0.9) {
+      EXPECT_EQ(found.r[static_cast<std::size_t>(axis)], Observability::strong) << found.sigma_r[axis];
+    }
+}
+
 TEST(Observability, AnEndWallClosesIt) {
   const Localizability found = corridor_residuals(true).judged();
   for (const Observability t : found.t) EXPECT_EQ(t, Observability::strong);

@@ -115,6 +115,44 @@ TEST(OdometryOnADrive, ASmoothTunnelIsLeftToTheWheels) {
   EXPECT_EQ(found.lost, 0u);
 }
 
+/// The largest error of the height on the way to the end of a level corridor and around the corner, m, with
+/// wheels and lidar alone, and by how much it changes in half a minute of standing there.
+std::pair<double, double> height_errors(std::uint64_t seed) {
+  DriveSpec spec;
+  const std::vector<Box> boxes{{-1.6, 51.6, -1.6, -1.3, 0, 3}, {-1.6, -1.3, -1.6, 1.6, 0, 3},
+                               {-1.6, 48.7, 1.3, 1.6, 0, 3},   {51.3, 51.6, -1.6, 31.6, 0, 3},
+                               {48.4, 48.7, 1.3, 31.6, 0, 3},  {48.4, 51.6, 31.3, 31.6, 0, 3}};
+  spec.world = std::make_shared<const World>(make_box_world(boxes, 0.0, 3.0).value());
+  spec.platform = config::load_platform("wheeled").value();
+  spec.seed = seed;
+  spec.steps = {StandFor{2.0}, DriveTo{{50, 0}, 2.0}, DriveTo{{50, 28}, 2.0}, StandFor{30.0}};
+  const DriveRecording drive = record_drive(spec).value();
+  double worst = 0, low = 1e3, high = -1e3;
+  OdometryRunner runner(
+      spec.platform, LidarOdometryParams::of(spec.platform), true, [&](const OdometryRunner::Step& step) {
+        if (!step.located) return;
+        const double error = step.state.pose.position.z() - drive.truth_at(step.end).position.z();
+        worst = std::max(worst, std::abs(error));
+        if (drive.truth.back().stamp - step.end > 29'000'000'000) return;
+        low = std::min(low, error);
+        high = std::max(high, error);
+      });
+  std::size_t w = 0;
+  for (const Sweep& sweep : drive.sweeps) {
+    for (; w < drive.wheels.size() && drive.wheels[w].stamp < DriveRecording::end_of(sweep) + 60'000'000; ++w)
+      runner.add(BodyMotion{drive.wheels[w].stamp, drive.wheels[w].pose});
+    runner.add(Sweep(sweep));
+  }
+  runner.finish();
+  return {worst, high - low};
+}
+
+TEST(OdometryOnADrive, TheHeightStaysOnLevelGround) {
+  const auto [worst, standing] = height_errors(1);
+  EXPECT_LT(worst, 0.35);
+  EXPECT_LT(standing, 0.01);
+}
+
 TEST(OdometryOnADrive, TheSameDataGiveTheSamePoses) {
   DriveSpec spec = round_trip(5);
   spec.steps.resize(3);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/time/random.hpp"
+#include "sim/world/noise.hpp"
 
 namespace adit::perception {
 namespace {
@@ -47,6 +48,36 @@ TEST(Thinner, LeavesOutPointsThatAreNoReturns) {
     ASSERT_LT(p.norm(), 100.0f);
   }
   EXPECT_TRUE(Thinner({}).thin({}).empty());
+}
+
+/// A turn of 900 columns between two walls, from behind counter-clockwise as a sweep comes, with range
+/// errors.
+std::vector<Eigen::Vector3f> corridor_sweep(Random& random) {
+  std::vector<Eigen::Vector3f> points;
+  for (int column = 0; column < 900; ++column) {
+    const double angle = -M_PI + 2 * M_PI * column / 900.0, away = 1.3 / std::abs(std::sin(angle));
+    if (!(away < 20.0)) continue;
+    for (int ring = 0; ring < 4; ++ring) {
+      const double range = away + 0.05 * sim::gaussian(random);
+      points.emplace_back(
+          Eigen::Vector3d(range * std::cos(angle), range * std::sin(angle), 0.4 * ring).cast<float>());
+    }
+  }
+  return points;
+}
+
+TEST(Thinner, DoesNotTurnACloudThatComesInTheOrderOfItsAngle) {
+  Random random(7);
+  Thinner thinner({.wanted = 400});
+  double turn = 0, weight = 0;
+  for (int cloud = 0; cloud < 200; ++cloud)
+    for (const Eigen::Vector3f& p : thinner.thin(corridor_sweep(random))) {
+      // How far beside its wall, to the left: of a turned cloud it grows with x.
+      const double beside = p.y() - std::copysign(1.3, p.y());
+      turn += p.x() * beside;
+      weight += p.x() * p.x();
+    }
+  EXPECT_NEAR(turn / weight, 0.0, 2e-5);  // Four standard deviations.
 }
 
 }  // namespace
