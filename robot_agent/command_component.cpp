@@ -60,6 +60,7 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
                   {commands_.authority(), context.peers, behaviour_, frames_, notices_}),
       telemetry_({*context.radio, *context.wire, context.rate, *context.driver, *context.watch, frames_,
                   commands_, behaviour_}),
+      correction_(params.platform),
       rivals_(now()),
       topics_(used_topics(params.platform, params.velocity)) {}
 

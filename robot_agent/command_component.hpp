@@ -190,7 +190,7 @@ class Agent::CommandComponent : public Component {
   Notices notices_;
   Safeguards safeguards_;
   Telemetry telemetry_;
-  PoseCorrection correction_{};
+  PoseCorrection correction_;
   Localisation reported_localisation_{Localisation::starting};
   Time looked_ahead_{};                      ///< When the map's focus was set last.
   Time localisation_since_{};                ///< Since then the odometry has a health that was not reported.

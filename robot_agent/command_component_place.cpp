@@ -75,7 +75,7 @@ void Agent::CommandComponent::compare_place(const std::shared_ptr<const Scan>& s
   compute(
       {.name = "place", .modelled = kRecognition, .deadline = 5s},
       [scan, keyframes = std::move(keyframes), recognise] {
-        return perception::recognise(keyframes, scan->points, scan->body, recognise);
+        return perception::recognise(keyframes, scan->points, scan->located, recognise);
       },
       [this, epoch = frames_.odom_epoch()](const Result<perception::RecognisedPlace>& found) {
         if (context_.place.pending() && epoch == frames_.odom_epoch()) place_compared(found);
@@ -127,17 +127,20 @@ void Agent::CommandComponent::add_waiting_scan() {
   scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
   // The yaw is the odometry's; how the body leans the IMU knows better.
   if (waiting.attitude) scan->body = perception::with_attitude(scan->body, *waiting.attitude);
+  const auto located = waiting.odometry ? correction_.located(*waiting.odometry) : std::nullopt;
+  scan->located = located.value_or(scan->body);
+  scan->jumps = correction_.jumps();
   if (context_.place.waits() && T_odom_base) compare_place(scan);
   if (context_.place.known()) add_to_map(scan);
   navigation_.add_scan(std::move(scan), waiting.received, now(), team(now()));
 }
 
 void Agent::CommandComponent::make_keyframe(const std::shared_ptr<const Scan>& scan) {
-  if (!context_.keyframes->wants(scan->body.position, frames_.odom_epoch())) return;
+  if (!context_.keyframes->wants(scan->located.position, frames_.odom_epoch())) return;
   compute(
       {.name = "make keyframe", .modelled = kKeyframe, .latest_only = true},
       [scan, epoch = frames_.odom_epoch()] {
-        return perception::make_keyframe(scan->points, scan->body, epoch);
+        return perception::make_keyframe(scan->points, scan->located, epoch);
       },
       [this](Result<perception::Keyframe> keyframe) {
         if (keyframe) context_.keyframes->add(std::move(*keyframe));
@@ -145,8 +148,10 @@ void Agent::CommandComponent::make_keyframe(const std::shared_ptr<const Scan>& s
 }
 
 void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan) {
-  if (localisation(now()) == Localisation::ok) make_keyframe(scan);
-  if (!context_.map) return;
+  const Localisation health = localisation(now());
+  if (health == Localisation::ok) make_keyframe(scan);
+  // A map made by a pose that is lost would be wrong for ever.
+  if (!context_.map || health == Localisation::lost || health == Localisation::starting) return;
   auto job = context_.map->job(scan, team(now()), frames_.odom_epoch(), now());
   if (!job) return;
   call(context_.map_insertion, std::move(job), {.deadline = 2s},

@@ -111,7 +111,7 @@ MapRecording record(const Ground& ground, std::uint64_t seed, int number, Durati
     auto scan = std::make_shared<agent::Scan>();
     scan->points =
         lidar.scan(ground.world, {}, base, static_cast<double>(kHeight), n + 1000 * random.below(1U << 30));
-    scan->body = T_odom_map * base;
+    scan->body = scan->located = T_odom_map * base;
     const std::shared_ptr<const agent::Scan> taken = scan;
     if (auto job = keeper.job(taken, {}, 0, strand->now())) {
       service.call(*strand, std::move(job), {.deadline = 2s}, [&](const Result<agent::MapStep>& step) {

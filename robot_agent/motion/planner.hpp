@@ -9,10 +9,14 @@
 
 namespace adit::agent {
 
-/// A scan: points in the frame of base_link, m, and the pose of base_link.
+/// A scan: points in the frame of base_link, m, and the poses of base_link at their instant, odometry frame.
 struct Scan {
   PointCloud points{};
-  Pose3 body{};  ///< Odometry frame.
+  Pose3 body{};  ///< By the pose that controls the body: what follows or avoids uses it.
+  /// Where the robot's own odometry saw it, or `body` without one: what lasts, as maps, uses it. See
+  /// PoseCorrection.
+  Pose3 located{};
+  std::uint32_t jumps{};  ///< How often `located` jumped before.
 };
 
 /// The input of one planning cycle.

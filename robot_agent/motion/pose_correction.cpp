@@ -9,11 +9,33 @@
 namespace adit::agent {
 namespace {
 
-constexpr double kUsualStep = 0.02;  ///< Between two samples of a driver that sends no stamps, s.
-constexpr double kMaxStep = 0.5;     ///< After a longer silence no more is made up for at once, s.
+constexpr double kUsualStep = 0.02;     ///< Between two samples of a driver that sends no stamps, s.
+constexpr double kMaxStep = 0.5;        ///< After a longer silence no more is made up for at once, s.
+constexpr double kNoise = 0.1;          ///< Of the way between two samples of a driver, m.
+constexpr double kHeadingNoise = 0.15;  ///< The same of its turn, rad.
+constexpr double kAlone = 0.1;  ///< Standard deviation of a way by the driver's odometry alone, share.
+constexpr std::uint64_t kLate = 500'000'000;  ///< A sample that is older than this is of another clock, ns.
 
 bool is_pose(const Pose3& pose) {
   return pose.position.allFinite() && std::fabs(pose.orientation.norm() - 1.0) < 1e-3;
+}
+
+double turn_between(const Pose3& a, const Pose3& b) {
+  return perception::log_so3(a.orientation.conjugate() * b.orientation).norm();
+}
+
+double seconds_between(std::uint64_t earlier, std::uint64_t later) {
+  return static_cast<double>(later - earlier) * 1e-9;
+}
+
+/// A pose on the way from one to another, at most so far from the first, m and rad.
+Pose3 towards(const Pose3& from, const Pose3& to, double way, double turn) {
+  const Eigen::Vector3d shift = to.position - from.position;
+  const Eigen::Vector3d about = perception::log_so3(from.orientation.conjugate() * to.orientation);
+  const double part =
+      std::min({1.0, way / std::max(1e-9, shift.norm()), turn / std::max(1e-9, about.norm())});
+  if (part >= 1.0) return to;
+  return {from.position + part * shift, (from.orientation * perception::exp_so3(part * about)).normalized()};
 }
 
 }  // namespace
@@ -22,6 +44,8 @@ void PoseCorrection::begin_frame(std::uint64_t stamp) {
   wanted_ = T_odom_driver_;  // Another value now would be a second jump.
   T_odom_local_.reset();
   T_driver_base_.reset();
+  T_odom_base_.reset();
+  slip_ = 0.0;
   frame_began_ = stamp;
 }
 
@@ -29,48 +53,75 @@ void PoseCorrection::shift(const Pose3& correction) {
   wanted_ = correction * wanted_;
   wanted_.orientation.normalize();
   if (T_odom_local_) T_odom_local_ = correction * *T_odom_local_;
+  ++jumps_;
 }
 
 void PoseCorrection::take(const OdometryReport& report, Time now) {
-  if (!is_pose(report.T_local_driver) || !std::isfinite(report.sigma) || report.stamp < frame_began_) return;
+  if (!is_pose(report.T_local_driver) || !is_pose(report.T_local_base) || !std::isfinite(report.sigma) ||
+      report.stamp < frame_began_)
+    return;
   heard_ = now;
+  const bool was_lost = health_ == Localisation::lost;
   health_ = report.health;
   if (report.health == Localisation::starting || !T_driver_base_) return;
+  if (was_lost != (health_ == Localisation::lost)) ++jumps_;
   if (!T_odom_local_ || report.instance != instance_) {
     const Pose3 here = wanted_ * *T_driver_base_, local = report.T_local_driver * *T_driver_base_;
     const Eigen::Quaterniond turn(
         Eigen::AngleAxisd(wrap_angle(here.yaw() - local.yaw()), Eigen::Vector3d::UnitZ()));
     T_odom_local_ = Pose3{here.position - turn * local.position, turn};
-    if (instance_ != 0) sigma_before_ = sigma_;
+    if (instance_ != 0) sigma_before_ = std::hypot(sigma_, kAlone * alone_);
     instance_ = report.instance;
+    reported_ = 0;
+    ++jumps_;
   }
+  const Pose3 before = wanted_;
   wanted_ = *T_odom_local_ * report.T_local_driver;
   sigma_ = std::hypot(sigma_before_, report.sigma);
+  slip_ = 0.0;
+  if (reported_ != 0 && report.stamp > reported_)
+    slip_ = ((before * *T_driver_base_).position - (wanted_ * *T_driver_base_).position).norm() /
+            std::max(kUsualStep, seconds_between(reported_, report.stamp));
+  reported_ = report.stamp;
+  alone_ = 0.0;
 }
 
 Pose3 PoseCorrection::apply(const Pose3& T_driver_base, std::uint64_t stamp) {
+  const Pose3 carried = T_odom_driver_ * T_driver_base;
+  if (stamp != 0 && stamp < applied_ && applied_ - stamp <= kLate) return carried;
   const bool dated = stamp != 0 && applied_ != 0 && stamp > applied_;
-  const double dt = dated ? std::min(kMaxStep, static_cast<double>(stamp - applied_) * 1e-9) : kUsualStep;
-  applied_ = std::max(applied_, stamp);
+  const double dt = dated ? std::min(kMaxStep, seconds_between(applied_, stamp)) : kUsualStep;
+  applied_ = stamp;
+  if (T_driver_base_) alone_ += (T_driver_base.position - T_driver_base_->position).norm();
   T_driver_base_ = T_driver_base;
-  const Pose3 have = T_odom_driver_ * T_driver_base, want = wanted_ * T_driver_base;
-  const Eigen::Vector3d way = want.position - have.position;
-  const Eigen::Vector3d turn = perception::log_so3(have.orientation.conjugate() * want.orientation);
-  const double part = std::min(
-      {1.0, kMaxSpeed * dt / std::max(1e-9, way.norm()), kMaxTurn * dt / std::max(1e-9, turn.norm())});
-  if (part >= 1.0) {
-    T_odom_driver_ = wanted_;
-    return want;
+  const Pose3 from = T_odom_base_.value_or(carried);
+  const bool drives = (carried.position - from.position).norm() <= max_speed_ * dt + kNoise &&
+                      turn_between(from, carried) <= max_turn_ * dt + kHeadingNoise;
+  if (drives) {
+    T_odom_base_ = towards(from, wanted_ * T_driver_base, max_speed_ * dt, max_turn_ * dt);
+    T_odom_driver_ = *T_odom_base_ * T_driver_base.inverse();
+    T_odom_driver_.orientation.normalize();
+  } else {
+    T_odom_base_ = carried;
   }
-  const Pose3 moved{have.position + part * way,
-                    (have.orientation * perception::exp_so3(part * turn)).normalized()};
-  T_odom_driver_ = moved * T_driver_base.inverse();
-  T_odom_driver_.orientation.normalize();
-  return moved;
+  pending_ = (T_odom_base_->position - (wanted_ * T_driver_base).position).norm();
+  return *T_odom_base_;
+}
+
+std::optional<Pose3> PoseCorrection::located(const OdometryReport& report) const {
+  if (!T_odom_local_ || report.instance != instance_) return std::nullopt;
+  return *T_odom_local_ * report.T_local_base;
+}
+
+double PoseCorrection::sigma() const {
+  const double since =
+      reported_ != 0 && applied_ > reported_ ? std::min(kMaxStep, seconds_between(reported_, applied_)) : 0.0;
+  return std::hypot(sigma_, kAlone * alone_) + pending_ + slip_ * since;
 }
 
 Localisation PoseCorrection::health(Time now) const {
-  return heard_ && now - *heard_ < kSilence ? health_ : Localisation::starting;
+  if (!heard_ || now - *heard_ >= kSilence) return Localisation::starting;
+  return health_ == Localisation::ok && pending_ > kPending ? Localisation::weak : health_;
 }
 
 }  // namespace adit::agent

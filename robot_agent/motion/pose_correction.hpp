@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/config/perception_level.hpp"
+#include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/time/time.hpp"
 
@@ -12,23 +13,31 @@ namespace adit::agent {
 /// The result of the robot's own odometry for one scan.
 struct OdometryReport {
   std::uint64_t stamp{};     ///< End of the sweep, driver's clock, ns.
-  Pose3 T_local_driver{};    ///< The driver's odometry in the frame of this odometry.
+  Pose3 T_local_base{};      ///< In the frame of this odometry.
+  Pose3 T_local_driver{};    ///< The driver's odometry in that frame, so that both agree at `stamp`.
   std::uint32_t instance{};  ///< Of the odometry: another one has another frame.
   Localisation health{Localisation::starting};
   double sigma{};  ///< Standard deviation of the horizontal position since the odometry began, m.
 };
 
-/// Places the driver's odometry in the frame `odom`, as the robot's own odometry says.
+/// The two poses of a robot in the frame `odom`, by its own odometry and its driver's.
 ///
-/// The driver's odometry carries the pose between two scans, and goes on alone when the own odometry is
-/// silent: so the pose has the driver's rate and delay, and never jumps. A correction is applied at no more
-/// than a walking pace, for the same reason. Where the driver's frame began again, or another instance of the
-/// odometry begins, the next report continues from the present pose.
+/// located() is where the own odometry saw the body at a scan. It may jump; maps, keyframes and places use
+/// it. apply() is for what controls the body: it has the driver's rate and delay, and never jumps. The
+/// driver's odometry carries it between two scans, and goes on alone when the own odometry is silent; it
+/// follows located() as fast as the body itself can move, so that wheels that turn while the body stands, or
+/// in a turn that it does not make, cannot carry it away. What is not made up for yet is part of its error.
+///
+/// Where the driver's frame began again, or another instance of the odometry begins, the next report
+/// continues from the present pose.
 class PoseCorrection {
  public:
-  static constexpr double kMaxSpeed = 0.5;  ///< Of the correction, m/s.
-  static constexpr double kMaxTurn = 0.5;   ///< rad/s
+  static constexpr double kFaster = 1.25;   ///< A body may exceed its platform's speeds by this factor.
+  static constexpr double kPending = 0.2;   ///< A larger correction that is pending is not `ok`, m.
   static constexpr Duration kSilence = 1s;  ///< After a longer silence the health is `starting`.
+
+  explicit PoseCorrection(const Platform& platform)
+      : max_speed_(kFaster * platform.max_speed), max_turn_(kFaster * platform.max_turn) {}
 
   /// Continues with a stored correction after a restart.
   void restore(const Pose3& T_odom_driver) { T_odom_driver_ = wanted_ = T_odom_driver; }
@@ -38,22 +47,32 @@ class PoseCorrection {
   void shift(const Pose3& correction);
   /// Takes a report. Ignored: one that is not finite, or of a previous frame.
   void take(const OdometryReport& report, Time now);
-  /// T_odom_base for a pose of the driver.
+  /// T_odom_base for a pose of the driver. A step of the driver that no body makes passes unchanged.
   Pose3 apply(const Pose3& T_driver_base, std::uint64_t stamp);
+  /// T_odom_base at the stamp of a report that was taken, as the own odometry saw it. Nothing: it has no
+  /// frame yet, or was another instance's.
+  std::optional<Pose3> located(const OdometryReport& report) const;
+  /// How often located() jumped: poses before and after lie in one frame, but not one beside the other.
+  std::uint32_t jumps() const { return jumps_; }
 
   const Pose3& T_odom_driver() const { return T_odom_driver_; }
   Localisation health(Time now) const;
-  double sigma() const { return sigma_; }
+  /// Standard deviation of the horizontal position, with what is not made up for, m.
+  double sigma() const;
 
  private:
+  double max_speed_, max_turn_;  ///< m/s, rad/s
   Pose3 T_odom_driver_{}, wanted_{};
   std::optional<Pose3> T_odom_local_{};  ///< Nothing: the next report sets it.
-  std::uint32_t instance_{};
-  std::uint64_t frame_began_{}, applied_{};
-  std::optional<Pose3> T_driver_base_{};  ///< The newest one.
+  std::uint32_t instance_{}, jumps_{};
+  std::uint64_t frame_began_{}, applied_{}, reported_{};  ///< Stamps.
+  std::optional<Pose3> T_driver_base_{}, T_odom_base_{};  ///< The newest ones.
   std::optional<Time> heard_{};
   Localisation health_{Localisation::starting};
   double sigma_{}, sigma_before_{};  ///< In m; the latter is of earlier instances.
+  double pending_{};                 ///< From apply() to where it should be, m.
+  double slip_{};                    ///< How fast the driver's odometry leaves the own one, m/s.
+  double alone_{};                   ///< Way by the driver's odometry since the last report, m.
 };
 
 }  // namespace adit::agent

@@ -150,8 +150,8 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
   const perception::OdometryState& state = odometry_->update(scan.points, scan.isolated);
   const auto T_driver_base = history_.at(scan.stamp);
   if (!T_driver_base) return std::nullopt;  // The driver's frame began again.
-  return OdometryReport{scan.stamp, state.pose * T_driver_base->inverse(), instance_, state.health,
-                        state.sigma()};
+  return OdometryReport{scan.stamp, state.pose,   state.pose * T_driver_base->inverse(),
+                        instance_,  state.health, state.sigma()};
 }
 
 void Scans::pass_on(std::size_t lidar) {

@@ -32,6 +32,8 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   if (boxes.empty()) return scan;
   auto rest = std::make_shared<Scan>();
   rest->body = scan->body;
+  rest->located = scan->located;
+  rest->jumps = scan->jumps;
   rest->points.reserve(scan->points.size());
   for (const Eigen::Vector3f& point : scan->points) {
     const Eigen::Vector2d place = point.head<2>().cast<double>();

@@ -261,8 +261,8 @@ std::shared_ptr<const MapJob> MapKeeper::job(const std::shared_ptr<const Scan>& 
                                              Time now) {
   // The completion is lost when the command component ends meanwhile.
   if (busy_ && now - *inserted_ < kMaxInsertion) return nullptr;
-  const bool moved = (scan->body.position - inserted_at_.position).norm() >= params_.min_move ||
-                     scan->body.orientation.angularDistance(inserted_at_.orientation) >= params_.min_turn;
+  const bool moved = (scan->located.position - inserted_at_.position).norm() >= params_.min_move ||
+                     scan->located.orientation.angularDistance(inserted_at_.orientation) >= params_.min_turn;
   if (inserted_ && inserted_epoch_ == odom_epoch && !moved && now - *inserted_ < params_.min_period)
     return nullptr;
   auto job = std::make_shared<MapJob>();
@@ -276,7 +276,7 @@ std::shared_ptr<const MapJob> MapKeeper::job(const std::shared_ptr<const Scan>& 
   job->made = now;
   busy_ = true;
   inserted_ = now;
-  inserted_at_ = scan->body;
+  inserted_at_ = scan->located;
   inserted_epoch_ = odom_epoch;
   return job;
 }

@@ -10,7 +10,7 @@ namespace {
 /// Inserts a scan into a grid and collects what the caller does not have yet. Work of a compute thread.
 MapStep inserted(const MapJob& job, MapStep step, perception::SubmapGrid& grid, double range) {
   const auto scan = without_team(job.scan, job.team);
-  const Pose3 T_submap_base = step.T_odom_submap.inverse() * scan->body;
+  const Pose3 T_submap_base = step.T_odom_submap.inverse() * scan->located;
   const Eigen::Affine3f T =
       (Eigen::Translation3d(T_submap_base.position) * T_submap_base.orientation).cast<float>();
   std::vector<Eigen::Vector3f> points;
@@ -43,9 +43,9 @@ Result<void> MapPart::on_start() {
 }
 
 bool MapPart::is_full(const MapJob& job) const {
-  if (!open_ || open_->odom_epoch != job.odom_epoch) return true;
-  const double length = open_->length + (job.scan->body.position - open_->last).norm();
-  const double height = std::abs(job.scan->body.position.z() - open_->height);
+  if (!open_ || open_->odom_epoch != job.odom_epoch || open_->jumps != job.scan->jumps) return true;
+  const double length = open_->length + (job.scan->located.position - open_->last).norm();
+  const double height = std::abs(job.scan->located.position.z() - open_->height);
   return length > params_.submap_length || height > params_.submap_height ||
          (job.made - open_->began > params_.submap_time && length > params_.submap_min_length);
 }
@@ -53,14 +53,15 @@ bool MapPart::is_full(const MapJob& job) const {
 void MapPart::insert(const std::shared_ptr<const MapJob>& job, const Reply<MapStep>& reply) {
   if (is_full(*job))
     open_ = Open{.index = job->next_submap,
-                 .T_odom_submap = {anchor(job->scan->body.position), Eigen::Quaterniond::Identity()},
+                 .T_odom_submap = {anchor(job->scan->located.position), Eigen::Quaterniond::Identity()},
                  .odom_epoch = job->odom_epoch,
+                 .jumps = job->scan->jumps,
                  .began = job->made,
-                 .last = job->scan->body.position,
-                 .height = job->scan->body.position.z(),
+                 .last = job->scan->located.position,
+                 .height = job->scan->located.position.z(),
                  .grid = std::make_shared<perception::SubmapGrid>()};
-  open_->length += (job->scan->body.position - open_->last).norm();
-  open_->last = job->scan->body.position;
+  open_->length += (job->scan->located.position - open_->last).norm();
+  open_->last = job->scan->located.position;
   MapStep step{
       .submap = open_->index, .T_odom_submap = open_->T_odom_submap, .odom_epoch = open_->odom_epoch};
   compute(

@@ -63,6 +63,7 @@ class MapPart : public Component {
     std::uint32_t index{};
     Pose3 T_odom_submap{};
     std::uint32_t odom_epoch{};
+    std::uint32_t jumps{};  ///< Scan::jumps of all its scans: a pose that jumped would shear it.
     Time began{};
     Eigen::Vector3d last{0, 0, 0};  ///< Position of the body at the last scan, odometry frame.
     double height{};                ///< Of the body when it began, odometry frame, m.

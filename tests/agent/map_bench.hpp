@@ -62,7 +62,7 @@ struct MapBench {
   }
   void scan(double x) {
     auto points = std::make_shared<Scan>();
-    points->body = Pose3::level({x, 0, 0}, 0);
+    points->body = points->located = Pose3::level({x, 0, 0}, 0);
     for (double along = -4; along <= 4; along += 0.2)
       for (double z = 0; z <= 2; z += 0.2)
         points->points.emplace_back(static_cast<float>(along), 3.0F, static_cast<float>(z));

@@ -29,7 +29,7 @@ class MapKeeperTest : public testing::Test {
   /// Offers a scan at x; returns whether it enters the map.
   bool scan(double x, std::uint32_t odom_epoch = 0) {
     auto points = std::make_shared<Scan>();
-    points->body = Pose3::level({x, 0, 0}, 0);
+    points->body = points->located = Pose3::level({x, 0, 0}, 0);
     for (double y = -2; y <= 2; y += 0.05)
       for (double z = 0; z <= 1; z += 0.1)
         points->points.emplace_back(static_cast<float>(3 + std::floor(x / 5) * 5 - x), static_cast<float>(y),

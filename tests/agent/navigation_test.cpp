@@ -65,7 +65,7 @@ class NavigationTest : public testing::Test {
   void cycle(const Pose2& seen, const Pose2& stands) {
     odometry(seen);
     auto scan = std::make_shared<Scan>();
-    scan->body = Pose3::level(seen, 0);
+    scan->body = scan->located = Pose3::level(seen, 0);
     for (float y = -0.5f; y <= 0.3f; y += 0.03f)
       for (float z = 0.1f; z < 0.8f; z += 0.1f)
         scan->points.emplace_back(2.0f - static_cast<float>(seen.x), y, z);

@@ -11,6 +11,13 @@ namespace {
 constexpr std::uint64_t kMs = 1'000'000;
 const Time kNow{100s};
 
+Platform wheeled() {
+  Platform platform;
+  platform.max_speed = 2.0;
+  platform.max_turn = 1.5;
+  return platform;
+}
+
 /// Samples of a driver whose odometry counts 10 % too much, every 20 ms, and the true pose.
 struct Drive {
   std::uint64_t stamp{1'000'000 * kMs};
@@ -22,14 +29,15 @@ struct Drive {
     x += 0.02;
   }
   OdometryReport report(const Pose3& T_local_truth, std::uint32_t instance) const {
-    return {stamp, T_local_truth * truth() * driver().inverse(), instance, Localisation::ok, 0.02};
+    const Pose3 T_local_base = T_local_truth * truth();
+    return {stamp, T_local_base, T_local_base * driver().inverse(), instance, Localisation::ok, 0.02};
   }
 };
 
 double jump(const Pose3& a, const Pose3& b) { return (a.position - b.position).norm(); }
 
 TEST(PoseCorrection, FollowsTheReportsWithoutAJump) {
-  PoseCorrection correction;
+  PoseCorrection correction(wheeled());
   Drive drive;
   Pose3 last = correction.apply(drive.driver(), drive.stamp);
   for (int n = 1; n <= 500; ++n) {
@@ -44,7 +52,7 @@ TEST(PoseCorrection, FollowsTheReportsWithoutAJump) {
 }
 
 TEST(PoseCorrection, AnotherInstanceContinuesFromThePresentPose) {
-  PoseCorrection correction;
+  PoseCorrection correction(wheeled());
   Drive drive;
   Pose3 last{};
   for (int n = 0; n < 400; ++n) {
@@ -62,8 +70,8 @@ TEST(PoseCorrection, AnotherInstanceContinuesFromThePresentPose) {
   EXPECT_NEAR(last.position.y(), 0, 0.02);
 }
 
-TEST(PoseCorrection, ALargeErrorIsMadeUpForAtAWalkingPace) {
-  PoseCorrection correction;
+TEST(PoseCorrection, ALargeErrorIsMadeUpForAsFastAsTheBodyMoves) {
+  PoseCorrection correction(wheeled());
   Drive drive;
   correction.apply(drive.driver(), drive.stamp);
   correction.take(drive.report(Pose3{}, 1), kNow);
@@ -74,14 +82,14 @@ TEST(PoseCorrection, ALargeErrorIsMadeUpForAtAWalkingPace) {
   for (int n = 0; n < 150; ++n) {
     drive.stamp += 20 * kMs;
     const Pose3 now = correction.apply(drive.driver(), drive.stamp);
-    ASSERT_LE(jump(now, last), PoseCorrection::kMaxSpeed * 0.02 + 1e-9);
+    ASSERT_LE(jump(now, last), PoseCorrection::kFaster * 2.0 * 0.02 + 1e-9);
     last = now;
   }
   EXPECT_NEAR(last.position.y(), 1.0, 1e-6);
 }
 
 TEST(PoseCorrection, ADriverThatBeginsAgainIsFollowedFromThePresentCorrection) {
-  PoseCorrection correction;
+  PoseCorrection correction(wheeled());
   Drive drive;
   for (int n = 0; n < 100; ++n) {
     drive.step();
@@ -104,7 +112,7 @@ TEST(PoseCorrection, ADriverThatBeginsAgainIsFollowedFromThePresentCorrection) {
 }
 
 TEST(PoseCorrection, IgnoresReportsThatAreNoPoses) {
-  PoseCorrection correction;
+  PoseCorrection correction(wheeled());
   Drive drive;
   correction.apply(drive.driver(), drive.stamp);
   OdometryReport broken = drive.report(Pose3{}, 1);
@@ -117,8 +125,91 @@ TEST(PoseCorrection, IgnoresReportsThatAreNoPoses) {
   EXPECT_EQ(correction.health(kNow), Localisation::starting);
 }
 
+/// The own odometry stands still, by reports at 10 Hz that come 0.1 s late, while the driver moves.
+struct StuckRun {
+  bool honest{true};  ///< Never more than 5 sigma and 0.1 m off for longer than 0.5 s.
+  double end{}, end_yaw{};
+  double largest_step{};  ///< Between two poses, m.
+};
+StuckRun stuck(double speed, double turn, double seconds) {
+  PoseCorrection correction(wheeled());
+  StuckRun run;
+  std::uint64_t stamp = 1'000'000 * kMs;
+  std::optional<OdometryReport> on_its_way;
+  Pose3 last{};
+  double beyond = 0;
+  for (int n = 0; n <= static_cast<int>(seconds * 50); ++n, stamp += 20 * kMs) {
+    const double t = 0.02 * n;
+    const Pose3 driver = Pose3::level({speed * t, 0, turn * t}, 0);
+    const Pose3 now = correction.apply(driver, stamp);
+    if (n % 5 == 0) {
+      if (on_its_way) correction.take(*on_its_way, kNow);
+      on_its_way = OdometryReport{stamp, Pose3{}, driver.inverse(), 1, Localisation::ok, 0.02};
+    }
+    if (n > 0) run.largest_step = std::max(run.largest_step, jump(now, last));
+    last = now;
+    beyond = now.position.norm() > 5 * correction.sigma() + 0.1 ? beyond + 0.02 : 0.0;
+    run.honest = run.honest && beyond <= 0.5;
+    run.end = now.position.norm();
+    run.end_yaw = std::abs(now.yaw());
+  }
+  return run;
+}
+
+TEST(PoseCorrection, WheelsOfABodyThatIsStuckDoNotCarryItAway) {
+  for (const double speed : {0.4, 1.0, 2.0}) {
+    const StuckRun run = stuck(speed, 0, 20);
+    EXPECT_TRUE(run.honest) << speed;
+    EXPECT_LT(run.end, 0.25 * speed) << speed;  // What the wheels count until the next report.
+    EXPECT_LE(run.largest_step, PoseCorrection::kFaster * 2.0 * 0.02 + 1e-9);
+  }
+}
+
+TEST(PoseCorrection, ATurnThatTheBodyDoesNotMakeIsNotBelieved) {
+  const StuckRun run = stuck(0, 1.4, 2.3);
+  EXPECT_LT(run.end_yaw, 0.35);  // Of 3.2 rad.
+}
+
+TEST(PoseCorrection, ADriverThatBeginsAgainElsewhereIsSeenToDoSo) {
+  PoseCorrection correction(wheeled());
+  Drive drive;
+  for (int n = 0; n < 100; ++n) {
+    drive.step();
+    correction.apply(drive.driver(), drive.stamp);
+  }
+  const Pose3 last = correction.apply(drive.driver(), drive.stamp + 20 * kMs);
+  EXPECT_GT(jump(correction.apply(Pose3::level({40, 0, 0}, 0), drive.stamp + 40 * kMs), last), 30.0);
+}
+
+TEST(PoseCorrection, ALargeCorrectionThatIsPendingIsNeitherOkNorCertain) {
+  PoseCorrection correction(wheeled());
+  Drive drive;
+  correction.apply(drive.driver(), drive.stamp);
+  correction.take(drive.report(Pose3{}, 1), kNow);
+  correction.shift(Pose3::level({0, 1.0, 0}, 0));
+  correction.apply(drive.driver(), drive.stamp + 20 * kMs);
+  EXPECT_EQ(correction.health(kNow), Localisation::weak);
+  EXPECT_GT(correction.sigma(), 0.9);
+  // The map has the correction at once.
+  EXPECT_NEAR(correction.located(drive.report(Pose3{}, 1))->position.y(), 1.0, 1e-9);
+}
+
+TEST(PoseCorrection, AWayByTheDriverAloneIsLessCertain) {
+  PoseCorrection correction(wheeled());
+  Drive drive;
+  correction.apply(drive.driver(), drive.stamp);
+  correction.take(drive.report(Pose3{}, 1), kNow);
+  for (int n = 0; n < 500; ++n) {
+    drive.step();
+    correction.apply(drive.driver(), drive.stamp);
+  }
+  EXPECT_GT(correction.sigma(), 1.0);  // Of 11 m.
+  correction.take(drive.report(Pose3{}, 2), kNow);
+  EXPECT_GT(correction.sigma(), 1.0);
+}
+
 TEST(PoseCorrection, SilenceIsNoHealth) {
-  PoseCorrection correction;
+  PoseCorrection correction(wheeled());
   Drive drive;
   correction.apply(drive.driver(), drive.stamp);
   correction.take(drive.report(Pose3{}, 1), kNow);
