@@ -67,10 +67,11 @@ std::array<double, 9> isotropic(double variance) { return {variance, 0, 0, 0, va
 }  // namespace
 
 std_msgs::msg::Header message_header(Time stamp, const std::string& frame) {
-  const std::int64_t ns = stamp.time_since_epoch().count();
+  // Downwards: the nanoseconds of a time before 1970 count forward, too.
+  const auto sec = std::chrono::floor<std::chrono::seconds>(stamp.time_since_epoch());
   std_msgs::msg::Header out;
-  out.stamp().sec(static_cast<std::int32_t>(ns / 1'000'000'000));
-  out.stamp().nanosec(static_cast<std::uint32_t>(ns % 1'000'000'000));
+  out.stamp().sec(static_cast<std::int32_t>(sec.count()));
+  out.stamp().nanosec(static_cast<std::uint32_t>((stamp.time_since_epoch() - sec).count()));
   out.frame_id(frame);
   return out;
 }

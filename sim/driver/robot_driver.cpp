@@ -94,8 +94,8 @@ Result<void> RobotDriver::listen() {
   return {};
 }
 
-void RobotDriver::silence(Sensor sensor, bool silent) {
-  (sensor == Sensor::lidar ? lidar_silent_ : odometry_silent_) += silent ? 1 : -1;
+std_msgs::msg::Header RobotDriver::header(Sensor sensor, Time stamp, const std::string& frame) {
+  return message_header(stamp + faults(sensor).clock, frame);
 }
 
 Time RobotDriver::simulated(Duration at) {
@@ -108,12 +108,12 @@ Time RobotDriver::simulated(Duration at) {
 
 // A failed write is counted by the wire and shown with its counters; the next sample replaces it.
 void RobotDriver::send_odom() {
-  if (odometry_silent_ > 0) return;
+  if (silent(Sensor::odometry)) return;
   if (params_.catch_up) params_.catch_up();
   const Odometry& measured = simulation_.odometry(robot_);
   const bool realistic = simulation_.params().realistic;
   nav_msgs::msg::Odometry odom;
-  odom.header(message_header(realistic ? simulated(simulation_.now()) : strand_.now(), "odom"));
+  odom.header(header(Sensor::odometry, realistic ? simulated(simulation_.now()) : strand_.now(), "odom"));
   odom.child_frame_id("base_link");
   auto& pose = odom.pose().pose();
   pose.position().x(measured.pose().x);
@@ -149,9 +149,11 @@ void RobotDriver::send_imu() {
   }
   const std::optional<ImuConfig>& config = simulation_.platform(robot_).imu;
   const std::string frame = config.value_or(ImuConfig{}).frame;
-  for (const ImuSample& sample : simulation_.take_imu(robot_))
+  for (const ImuSample& sample : simulation_.take_imu(robot_)) {
+    if (silent(Sensor::imu)) continue;  // Those of the silence do not come later.
     (void)endpoints_->imu.write(imu_message(sample, simulation_.imu_params(robot_),
-                                            message_header(simulated(sample.at) + imu_clock_, frame)));
+                                            header(Sensor::imu, simulated(sample.at) + imu_clock_, frame)));
+  }
 }
 
 void RobotDriver::send_battery() {
@@ -166,7 +168,7 @@ void RobotDriver::send_battery() {
 }
 
 void RobotDriver::send_points() {
-  if (lidar_silent_ > 0) return;
+  if (silent(Sensor::lidar)) return;
   if (params_.catch_up) params_.catch_up();
   std::weak_ptr<Endpoints> alive = endpoints_;
   const auto send = [alive](const Result<std::vector<std::uint8_t>>& bytes) {
@@ -177,7 +179,7 @@ void RobotDriver::send_points() {
     auto job = std::make_shared<Simulation::ScanJob>(simulation_.scan(robot_));
     strand_.compute(
         {.name = "scan", .modelled = params_.scan_delay},
-        [job, header = message_header(strand_.now(), "base_link")] {
+        [job, header = header(Sensor::lidar, strand_.now(), "base_link")] {
           return cloud_message(job->compute(), header);
         },
         send);
@@ -189,7 +191,7 @@ void RobotDriver::send_points() {
   if (random_.chance(noise_ * kLateScan)) delay += kLongestDelay;
   strand_.compute(
       {.name = "scan", .modelled = delay},
-      [job, header = message_header(begin, simulation_.platform(robot_).lidar().frame)] {
+      [job, header = header(Sensor::lidar, begin, simulation_.platform(robot_).lidar().frame)] {
         return cloud_message(job->trace(), header);
       },
       send);

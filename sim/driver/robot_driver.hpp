@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,6 +11,10 @@
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "sim/driver/sensor.hpp"
 #include "sim/world/simulation.hpp"
+
+namespace std_msgs::msg {
+class Header;
+}
 
 namespace adit::sim {
 
@@ -39,10 +44,22 @@ class RobotDriver {
   /// Makes the endpoints and begins to send. Errors of the wire.
   Result<void> start();
   /// A sensor is silent as long as it was silenced more often than not.
-  void silence(Sensor sensor, bool silent);
+  void silence(Sensor sensor, bool silent) { faults(sensor).silences += silent ? 1 : -1; }
+  /// The stamps of a sensor are `by` off from now on; jumps add up, and the opposite one ends it. Its
+  /// messages come at the same time as before.
+  void jump_clock(Sensor sensor, Duration by) { faults(sensor).clock += by; }
 
  private:
   struct Endpoints;
+  /// Faults of one sensor that are active.
+  struct SensorFaults {
+    int silences{};
+    Duration clock{};
+  };
+  SensorFaults& faults(Sensor sensor) { return faults_[static_cast<std::size_t>(sensor)]; }
+  bool silent(Sensor sensor) { return faults(sensor).silences > 0; }
+  /// Header of a sensor's message that a driver without faults would stamp with `stamp`.
+  std_msgs::msg::Header header(Sensor sensor, Time stamp, const std::string& frame);
   Result<void> listen();
   /// The driver's clock when the simulation was at `at`.
   Time simulated(Duration at);
@@ -58,7 +75,7 @@ class RobotDriver {
   DriverParams params_;
   std::shared_ptr<Endpoints> endpoints_;  // shared with scans under way
   Time started_{};
-  int lidar_silent_{}, odometry_silent_{};
+  std::array<SensorFaults, 3> faults_{};
   double noise_;
   Random random_;                         ///< Of the timing.
   Time origin_{};                         ///< The driver's clock at the simulation's begin.

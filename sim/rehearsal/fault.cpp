@@ -18,6 +18,11 @@ std::string pair(const std::string& a, const std::string& b) { return list({a, b
 
 std::string window(Duration duration) { return fmt::format(", for: {:.3f}", seconds(duration)); }
 
+// Of what may last to the end.
+std::string open_window(Duration duration) { return duration > 0ns ? window(duration) : std::string(); }
+
+std::string sensor(Sensor sensor) { return ", sensor: " + sensor_words()[static_cast<std::size_t>(sensor)]; }
+
 std::string component_of(const std::string& robot, const std::string& component) {
   return component.empty() ? robot : robot + "/" + component;
 }
@@ -61,8 +66,7 @@ std::pair<const char*, std::string> parts(const Fault& fault) {
             return Fields{"clock_jump", fmt::format("{{{}}}", fmt::join(jumps, ", "))};
           },
           [](const SensorSilent& f) {
-            const char* sensor = f.sensor == Sensor::lidar ? "lidar" : "odometry";
-            return Fields{"sensor_silent", f.robot + ", sensor: " + sensor + window(f.duration)};
+            return Fields{"sensor_silent", f.robot + sensor(f.sensor) + window(f.duration)};
           },
           [](const StuckDrive& f) {
             return Fields{"stuck", f.robot + window(f.duration)};
@@ -91,6 +95,18 @@ std::pair<const char*, std::string> parts(const Fault& fault) {
           },
           [](const Twin& f) {
             return Fields{"twin", f.robot + window(f.duration)};
+          },
+          [](const Slip& f) {
+            return Fields{
+                "slip", f.robot + fmt::format(", wheels: [{:.3f}, {:.3f}]", f.vx, f.wz) + window(f.duration)};
+          },
+          [](const TurnSlip& f) {
+            return Fields{"turn_slip",
+                          f.robot + fmt::format(", share: {:.3f}", f.share) + window(f.duration)};
+          },
+          [](const DriverClock& f) {
+            return Fields{"driver_clock", f.robot + fmt::format(", jump: {:.3f}", seconds(f.jump)) +
+                                              sensor(f.sensor) + open_window(f.duration)};
           },
       },
       fault.what);

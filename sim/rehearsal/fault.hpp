@@ -96,6 +96,26 @@ struct Steer {
 struct OdometryReset {
   std::string robot{};
 };
+/// The wheels report that velocity (body frame, m/s and rad/s) while the body is stuck, whatever is
+/// commanded.
+struct Slip {
+  std::string robot{};
+  double vx{}, wz{};
+  Duration duration{};
+};
+/// The body turns by that share, (0, 1], less than the wheels report.
+struct TurnSlip {
+  std::string robot{};
+  double share{};
+  Duration duration{};
+};
+/// The stamps of a sensor are that far off; its messages come at the same time as before.
+struct DriverClock {
+  std::string robot{};
+  Duration jump{};
+  Sensor sensor{Sensor::lidar};
+  Duration duration{};  ///< 0: to the end.
+};
 /// A second computer with the name of that robot comes on the air: an agent with a disk of its own and no
 /// driver.
 struct Twin {
@@ -106,7 +126,8 @@ struct Twin {
 struct Fault {
   Duration at{};
   std::variant<Crash, Hang, CutLink, DegradeLink, Partition, Reorder, Duplicate, ClockJump, SensorSilent,
-               StuckDrive, DiskFull, Forge, StuckStick, Find, Steer, OdometryReset, Twin>
+               StuckDrive, DiskFull, Forge, StuckStick, Find, Steer, OdometryReset, Twin, Slip, TurnSlip,
+               DriverClock>
       what{};
 };
 
@@ -114,7 +135,7 @@ struct Fault {
 std::string kind_of(const Fault& fault);
 /// As it is written in a scenario file, a mapping in one line.
 std::string to_yaml(const Fault& fault);
-/// How long it lasts; null for what happens in an instant.
+/// How long it lasts, 0: to the end; null for what happens in an instant.
 Duration* duration_of(Fault& fault);
 
 }  // namespace adit::sim

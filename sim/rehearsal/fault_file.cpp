@@ -11,8 +11,6 @@ namespace {
 
 using config::Node;
 
-constexpr double kLongest = 86400.0;  // s
-
 // One of the scenario's agents: a robot or a basestation.
 std::string check_agent(const Node& node, const std::string& id, const Scenario& scenario) {
   if (!scenario.robot(id) && !scenario.station(id))
@@ -28,10 +26,6 @@ std::pair<std::string, std::string> read_pair(const Node& fault, const char* key
     return {};
   }
   return {check_agent(node, names[0], scenario), check_agent(node, names[1], scenario)};
-}
-
-Duration read_length(const Node& fault) {
-  return from_seconds(fault.number("for", config::positive_up_to(kLongest)));
 }
 
 // ROBOT/COMPONENT, or the name alone.
@@ -86,7 +80,7 @@ ClockJump read_jump(const Node& fault, const Scenario& scenario) {
   for (const auto& [who, by] : node.entries()) {
     check_agent(by, who, scenario);
     // Computers judge time by a clock that never goes back, but that a suspend lets jump.
-    out.by[who] = from_seconds(by.as_number(config::positive_up_to(kLongest)));
+    out.by[who] = from_seconds(by.as_number(config::positive_up_to(kLongestTime)));
   }
   if (out.by.empty()) node.fail(Reason::wrong_type, "expected {NAME: SECONDS} for clock_jump");
   return out;
@@ -149,10 +143,12 @@ void read_link_fault(const Node& fault, const std::string& kind, const Scenario&
 }
 
 Fault read_fault(const Node& node, const Scenario& scenario) {
-  static const std::vector<std::string> kinds{
-      "crash",          "hang",          "cut",   "degrade",   "partition", "reorder", "duplicate",
-      "clock_jump",     "sensor_silent", "stuck", "disk_full", "forge",     "finds",   "steers",
-      "odometry_reset", "twin"};
+  static const std::vector<std::string> others{
+      "crash", "hang",      "cut",   "degrade", "partition", "reorder",        "duplicate", "clock_jump",
+      "stuck", "disk_full", "forge", "finds",   "steers",    "odometry_reset", "twin"};
+  std::vector<std::string> kinds = others;
+  const auto& of_drivers = driver_fault_kinds();
+  kinds.insert(kinds.end(), of_drivers.begin(), of_drivers.end());
   Fault fault;
   fault.at = read_time(node, "at", scenario);
   std::string kind, all;
@@ -174,10 +170,8 @@ Fault read_fault(const Node& node, const Scenario& scenario) {
     fault.what = read_partition(node, scenario);
   } else if (kind == "clock_jump") {
     fault.what = read_jump(node, scenario);
-  } else if (kind == "sensor_silent") {
-    const std::string robot = read_robot(node, "sensor_silent", scenario);
-    const bool lidar = node.choice("sensor", {"lidar", "odometry"}, 0) == 0;
-    fault.what = SensorSilent{robot, lidar ? Sensor::lidar : Sensor::odometry, read_length(node)};
+  } else if (std::find(of_drivers.begin(), of_drivers.end(), kind) != of_drivers.end()) {
+    read_driver_fault(node, kind, scenario, fault);
   } else if (kind == "stuck") {
     read_stuck(node, scenario, fault);
   } else if (kind == "disk_full") {

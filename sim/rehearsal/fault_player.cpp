@@ -18,6 +18,10 @@ void FaultPlayer::later(Duration duration, Task task) {
   stage_.scheduler.at(stage_.scheduler.elapsed() + duration, std::move(task));
 }
 
+Traction& FaultPlayer::traction(const std::string& robot) {
+  return stage_.simulation.traction(stage_.simulation.find(robot).value());
+}
+
 void FaultPlayer::note(Result<void> result) {
   if (health_ && !result) health_ = std::move(result);
 }
@@ -84,21 +88,33 @@ void FaultPlayer::play(const ClockJump& fault) {
 }
 
 void FaultPlayer::play(const SensorSilent& fault) {
-  RobotMachine* robot = robots_.at(fault.robot).get();
-  robot->silence(fault.sensor, true);
-  later(fault.duration, [robot, sensor = fault.sensor] { robot->silence(sensor, false); });
+  RobotDriver* driver = &robots_.at(fault.robot)->driver();
+  during(fault.duration, [driver, sensor = fault.sensor](bool begins) { driver->silence(sensor, begins); });
 }
 
 void FaultPlayer::play(const StuckDrive& fault) {
-  const std::size_t robot = stage_.simulation.find(fault.robot).value();
-  stage_.simulation.jam(robot, true);
-  later(fault.duration, [this, robot] { stage_.simulation.jam(robot, false); });
+  during(fault.duration, [to = &traction(fault.robot)](bool begins) { to->jam(begins); });
+}
+
+void FaultPlayer::play(const Slip& fault) {
+  const Twist2 wheels{fault.vx, 0.0, fault.wz};
+  during(fault.duration, [to = &traction(fault.robot), wheels](bool begins) { to->slip(wheels, begins); });
+}
+
+void FaultPlayer::play(const TurnSlip& fault) {
+  during(fault.duration,
+         [to = &traction(fault.robot), share = fault.share](bool begins) { to->turn_slip(share, begins); });
+}
+
+void FaultPlayer::play(const DriverClock& fault) {
+  during(fault.duration, [driver = &robots_.at(fault.robot)->driver(), fault](bool begins) {
+    driver->jump_clock(fault.sensor, begins ? fault.jump : -fault.jump);
+  });
 }
 
 void FaultPlayer::play(const DiskFull& fault) {
   RobotMachine* robot = robots_.at(fault.robot).get();
-  robot->fill_disk(true);
-  later(fault.duration, [robot] { robot->fill_disk(false); });
+  during(fault.duration, [robot](bool begins) { robot->fill_disk(begins); });
 }
 
 void FaultPlayer::play(const Forge& fault) {

@@ -43,8 +43,18 @@ class FaultPlayer {
   void play(const Steer& steer);
   void play(const OdometryReset& fault);
   void play(const Twin& fault);
+  void play(const Slip& fault);
+  void play(const TurnSlip& fault);
+  void play(const DriverClock& fault);
   void disturb(wire::Disturbance disturbance, Duration duration);
   void later(Duration duration, Task task);
+  /// Calls `change(true)` now and `change(false)` after `duration`, unless that is 0.
+  template <class Change>
+  void during(Duration duration, Change change) {
+    change(true);
+    if (duration > Duration{}) later(duration, [change] { change(false); });
+  }
+  Traction& traction(const std::string& robot);
   void note(Result<void> result);
 
   Stage& stage_;

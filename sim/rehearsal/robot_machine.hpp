@@ -44,7 +44,7 @@ class RobotMachine {
   Result<void> add_twin(Duration duration);
   /// The computer's clock goes on by so much at once.
   void jump_clock(Duration by);
-  void silence(Sensor sensor, bool silent) { driver_->silence(sensor, silent); }
+  RobotDriver& driver() { return *driver_; }
   /// The disk is full as long as it was filled more often than freed.
   void fill_disk(bool full);
   /// Why the agent could not be started again, if so.

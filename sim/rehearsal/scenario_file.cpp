@@ -15,7 +15,6 @@ namespace {
 
 using config::Node;
 
-constexpr double kLongest = 86400.0;  // s
 constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53;
 
 std::filesystem::path find_map(const Node& world, const std::string& key, const std::string& file) {
@@ -141,9 +140,9 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.text = text;
   out.name = std::filesystem::path(file).stem().string();
   // A missing key is reported itself, not its effect on every time in the file.
-  out.duration = from_seconds(root.has("duration") ? root.number("duration", config::positive_up_to(kLongest))
-                                                   : kLongest);
-  if (!root.has("duration")) root.number("duration", config::positive_up_to(kLongest));
+  out.duration = from_seconds(
+      root.has("duration") ? root.number("duration", config::positive_up_to(kLongestTime)) : kLongestTime);
+  if (!root.has("duration")) root.number("duration", config::positive_up_to(kLongestTime));
   out.seed = static_cast<std::uint64_t>(root.integer("seed", 0, kMaxSeed, 1));
   out.world = read_world(root.child("world"), file);
   out.link = read_link(root.child_if("link"), file);

@@ -9,6 +9,8 @@
 
 namespace adit::sim {
 
+inline constexpr double kLongestTime = 86400.0;  ///< Of a scenario and of a fault, s.
+
 /// 1 to 32 of [A-Za-z0-9_-].
 std::string read_name(const config::Node& node, const char* key);
 std::string read_robot(const config::Node& node, const char* key, const Scenario& scenario);
@@ -22,6 +24,13 @@ void read_machines(const config::Node& root, Scenario& out);
 wire::LinkProfile read_link(const config::Node& node, const std::string& file);
 std::vector<ScriptLine> read_script(const config::Node& root, const Scenario& scenario);
 RandomScript read_random(const config::Node& node, const Scenario& scenario);
+/// Time for which a fault lasts, key `for`.
+Duration read_length(const config::Node& fault);
+/// Kinds of faults of a robot's drive and sensors.
+const std::vector<std::string>& driver_fault_kinds();
+/// Reads one of them.
+void read_driver_fault(const config::Node& node, const std::string& kind, const Scenario& scenario,
+                       Fault& out);
 std::vector<Fault> read_faults(const config::Node& root, const Scenario& scenario);
 RandomFaults read_random_faults(const config::Node& node, const Scenario& scenario);
 std::vector<Expectation> read_expectations(const config::Node& root, const Scenario& scenario);

@@ -11,6 +11,12 @@ constexpr double kNoWay = 1e-3;  // m/s: a slower command says nothing about a c
 
 }  // namespace
 
+Pose2 arc(const Twist2& v, double dt) {
+  // Its chord: exact for a constant velocity up to second order.
+  const double half = 0.5 * v.wz * dt, c = std::cos(half), s = std::sin(half);
+  return {(v.vx * c - v.vy * s) * dt, (v.vx * s + v.vy * c) * dt, v.wz * dt};
+}
+
 void Body::command(const Twist2& wanted) {
   const auto finite = [](double v) { return std::isfinite(v) ? v : 0.0; };
   wanted_ = platform_.limited({finite(wanted.vx), finite(wanted.vy), finite(wanted.wz), finite(wanted.vz)});
@@ -37,10 +43,7 @@ Pose2 Body::advance(double dt) {
     wheels_ += std::clamp(wheels_wanted_ - wheels_, -steer_limit, steer_limit);
     twist_.wz = twist_.vx * std::tan(wheels_) / platform_.wheelbase;
   }
-  // The chord of the arc that the body describes: exact for a constant velocity up to second order.
-  const Twist2 v = twist();
-  const double half = 0.5 * v.wz * dt, c = std::cos(half), s = std::sin(half);
-  return pose_ * Pose2{(v.vx * c - v.vy * s) * dt, (v.vx * s + v.vy * c) * dt, v.wz * dt};
+  return pose_ * arc(twist(), dt);
 }
 
 double Body::climb(double z, double ground, double ceiling, double dt) {
@@ -51,9 +54,10 @@ double Body::climb(double z, double ground, double ceiling, double dt) {
   return z + std::clamp(ground + above_ - z, -platform_.max_climb * dt, platform_.max_climb * dt);
 }
 
-Twist2 Body::twist() const {
+Twist2 Body::twist(double turn_share) const {
   // What a car turns about is its rear axle.
-  return {twist_.vx, twist_.vy + platform_.rear_axle() * twist_.wz, (1.0 - platform_.turn_slip) * twist_.wz};
+  const double turn = turn_share * twist_.wz;
+  return {twist_.vx, twist_.vy + platform_.rear_axle() * turn, (1.0 - platform_.turn_slip) * turn};
 }
 
 }  // namespace adit::sim

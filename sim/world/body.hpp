@@ -5,6 +5,9 @@
 
 namespace adit::sim {
 
+/// Displacement, in the frame of its begin, of a body that has this velocity for `dt` seconds.
+Pose2 arc(const Twist2& velocity, double dt);
+
 /// A robot's drive: what a commanded velocity becomes under the limits of its platform.
 class Body {
  public:
@@ -28,9 +31,15 @@ class Body {
   const Platform& platform() const { return platform_; }
   const Pose2& pose() const { return pose_; }
   /// Of base_link. Tracks skid: less of their turn arrives. A car turns about its rear axle.
-  Twist2 twist() const;
+  Twist2 twist() const { return twist(turn_share_); }
+  /// The same as the wheels say it, who know nothing of the share below.
+  Twist2 wheels() const { return twist(1.0); }
+  /// Share of the wheels' turn by which the body turns from now on, [0, 1]; 1 at the start.
+  void set_turn_share(double share) { turn_share_ = share; }
 
  private:
+  Twist2 twist(double turn_share) const;
+
   Platform platform_;
   Pose2 pose_;
   Twist2 twist_{};  ///< Velocity of the drive.
@@ -39,6 +48,7 @@ class Body {
   double above_{0.0};                        ///< Aerial: target height above the ground, m.
   double watchdog_;
   double silence_{0.0};  ///< Time since the last command, s.
+  double turn_share_{1.0};
 };
 
 }  // namespace adit::sim

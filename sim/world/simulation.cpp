@@ -238,18 +238,25 @@ void Simulation::move(std::size_t index) {
   if (robot.real) settle(robot, twist, robot.body.pose() != before);
 }
 
+Pose2 Simulation::counted(const Robot& robot, const Pose2& before, const Pose2& after) const {
+  const double dt = seconds(params_.step);
+  if (const auto spin = robot.traction.spin()) return before * arc(*spin, dt);
+  return robot.traction.turn_share() < 1.0 ? before * arc(robot.body.wheels(), dt) : after;
+}
+
 void Simulation::drive(std::size_t index) {
   Robot& robot = robots_[index];
   const double dt = seconds(params_.step);
   if (robot.body.platform().flies()) lift(robot);
   const Pose2 before = robot.body.pose();
+  robot.body.set_turn_share(robot.traction.turn_share());
   Pose2 after = robot.body.advance(dt);
-  if (robot.jams > 0) {
+  if (robot.traction.holds()) {
     robot.body.halt();
     after = before;
   }
   if (after == before) {
-    robot.odometry.move(before, before, dt);
+    robot.odometry.move(before, counted(robot, before, before), dt);
     robot.truth.twist = robot.body.twist();
     return;
   }
@@ -263,7 +270,7 @@ void Simulation::drive(std::size_t index) {
     if (std::hypot(away.x, away.y) > 0.05 || std::abs(away.yaw) > 0.1) robot.partner.reset();
   }
   const Pose2 now = robot.body.pose();
-  robot.odometry.move(before, now, dt);
+  robot.odometry.move(before, partner ? now : counted(robot, before, now), dt);
   Truth& truth = robot.truth;
   truth.twist = robot.body.twist();
   truth.distance += (now.position() - before.position()).norm();

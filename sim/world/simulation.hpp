@@ -15,6 +15,7 @@
 #include "sim/world/person.hpp"
 #include "sim/world/realism.hpp"
 #include "sim/world/standing_map.hpp"
+#include "sim/world/traction.hpp"
 #include "sim/world/world.hpp"
 
 namespace adit::sim {
@@ -93,8 +94,8 @@ class Simulation {
 
   /// What a driver does with a cmd_vel.
   void command(std::size_t robot, const Twist2& wanted) { robots_[robot].body.command(wanted); }
-  /// The drive ignores commands while it was jammed more often than freed.
-  void jam(std::size_t robot, bool jammed) { robots_[robot].jams += jammed ? 1 : -1; }
+  /// Faults between a robot's drive and the ground, which may begin and end between two steps.
+  Traction& traction(std::size_t robot) { return robots_[robot].traction; }
   /// Its odometry starts at zero again, as after a restart of its driver.
   void reset_odometry(std::size_t robot) { robots_[robot].odometry.reset(); }
   const Truth& truth(std::size_t robot) const { return robots_[robot].truth; }
@@ -141,8 +142,8 @@ class Simulation {
     Truth truth{};
     std::optional<std::size_t> partner{};  ///< Partner of the present contact, see contact().
     Pose2 contact{};                       ///< Place where it began.
-    int jams{};                            ///< Active jams of its drive.
-    double start_ground{};                 ///< World frame, m.
+    Traction traction{};
+    double start_ground{};  ///< World frame, m.
     std::optional<Realism> real{};
   };
   Simulation(std::shared_ptr<const World> world, const SimulationParams& params);
@@ -168,6 +169,8 @@ class Simulation {
   /// Heights that a flying body takes up, m, world: leaning it takes up more.
   static std::pair<double, double> extent(const Robot& robot);
   void lift(Robot& robot);
+  /// Pose after a step from `before` as wheels or legs count it; that of the body is `after`.
+  Pose2 counted(const Robot& robot, const Pose2& before, const Pose2& after) const;
   void record(std::size_t robot, std::size_t partner);
   /// How fast a robot and a person come nearer to `body` by their own motion, m/s.
   double approach(std::size_t robot, const Rectangle& body) const;

@@ -68,7 +68,9 @@ void Simulation::sense() {
     Realism& real = *robot.real;
     const Platform& platform = robot.body.platform();
     const double speed = std::hypot(robot.truth.twist.vx, robot.truth.twist.vy);
-    const double effort = platform.flies() ? 1.0 : std::min(1.0, speed / platform.max_speed);
+    const double wheels = std::abs(robot.traction.spin().value_or(Twist2{}).vx);
+    const double effort =
+        platform.flies() ? 1.0 : std::min(1.0, std::max(speed, wheels) / platform.max_speed);
     real.imu.advance(robot.truth.pose, now_, params_.step, effort);
     real.history.pop_front();
     real.history.push_back(robot.truth.pose);

@@ -57,6 +57,14 @@ TEST(Faults, OverlappingCutsEndOnlyThemselves) {
               "  - {at: 12, robot: r1, mode: waypoint}\n");
 }
 
+TEST(Faults, BodyOfASlipIsStuckThoughItsWheelsSayThatItDrives) {
+  expect_both("", "  - {at: 5, slip: r1, wheels: [1, 0], for: 4}\n",
+              "  - {from: 5.1, to: 8.9, robot: r1, still: 0.001}\n");
+  // Its agent believes the wheels: it brakes for the goal 4 m before it.
+  expect_both("", "  - {at: 5, slip: r1, wheels: [1, 0], for: 4}\n",
+              "  - {at: 19, robot: r1, near: [5, 0, 1]}\n");
+}
+
 TEST(Faults, CommandGivenUpDuringACutIsNotObeyedAfterIt) {
   expect_both(
       "  - {at: 7, by: op1, do: mode r1 hold}\n", "  - {at: 6, cut: [op1, r1], for: 6}\n",

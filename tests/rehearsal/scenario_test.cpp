@@ -169,7 +169,12 @@ TEST(Scenario, EveryFaultIsWrittenAsItIsRead) {
       "{at: 15.000, forge: [op1, r1], for: 2.000}",
       "{at: 16.000, steers: r1, velocity: [0.500, 0.000, -0.250], for: 2.000}",
       "{at: 17.000, odometry_reset: r1}",
-      "{at: 18.000, twin: r1, for: 2.000}"};
+      "{at: 18.000, twin: r1, for: 2.000}",
+      "{at: 19.000, slip: r1, wheels: [1.500, -0.250], for: 2.000}",
+      "{at: 20.000, turn_slip: r1, share: 0.500, for: 2.000}",
+      "{at: 21.000, driver_clock: r1, jump: 3600.000, sensor: lidar, for: 2.000}",
+      "{at: 22.000, driver_clock: r2, jump: -10.000, sensor: odometry}",
+      "{at: 23.000, driver_clock: r2, jump: 1600000000.000, sensor: lidar}"};
   std::string all;
   for (const std::string& fault : faults) all += "  - " + fault + "\n";
   const auto s = parse_scenario(with("  - {at: 20, crash: r1}\n", all), "b.yaml");
@@ -254,6 +259,19 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"steers_nowhere", "crash: r1", "steers: r1, velocity: [1, 0], for: 3", 15, "3"},
         Bad{"twin_of_a_station", "crash: r1", "twin: op1, for: 3", 15, "op1"},
         Bad{"odometry_of_a_station", "crash: r1", "odometry_reset: op1", 15, "op1"},
+        Bad{"slip_of_a_station", "crash: r1", "slip: op1, wheels: [1, 0], for: 3", 15, "op1"},
+        Bad{"slip_of_one_number", "crash: r1", "slip: r1, wheels: [1], for: 3", 15, "2"},
+        Bad{"slip_of_a_racer", "crash: r1", "slip: r1, wheels: [3, 0], for: 3", 15, "[-2, 2]"},
+        Bad{"slip_for_ever", "crash: r1", "slip: r1, wheels: [1, 0]", 15, "for"},
+        Bad{"slip_without_wheels", "crash: r1", "slip: r1, for: 3", 15, "wheels"},
+        Bad{"turn_slip_of_more_than_all", "crash: r1", "turn_slip: r1, share: 1.5, for: 3", 15, "(0, 1]"},
+        Bad{"turn_slip_of_nothing", "crash: r1", "turn_slip: r1, share: 0, for: 3", 15, "(0, 1]"},
+        Bad{"driver_clock_too_far", "crash: r1", "driver_clock: r1, jump: 3e9", 15, "[-2e"},
+        Bad{"driver_clock_by_nothing", "crash: r1", "driver_clock: r1, sensor: lidar", 15, "jump"},
+        Bad{"driver_clock_of_a_nose", "crash: r1", "driver_clock: r1, jump: 1, sensor: nose", 15, "odometry"},
+        Bad{"driver_clock_of_no_imu", "crash: r1", "driver_clock: r1, jump: 1, sensor: imu", 15,
+            "lidar: full"},
+        Bad{"driver_clock_in_a_station", "crash: r1", "driver_clock: op1, jump: 1", 15, "op1"},
         Bad{"full_disk_of_a_station", "crash: r1", "disk_full: op1, for: 3", 15, "op1"},
         Bad{"find_by_nobody", "crash: r1", "finds: artifact", 15, "robot"},
         Bad{"find_by_a_station", "crash: r1", "finds: artifact, robot: op1", 15, "op1"},

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstring>
+#include <functional>
 
 #include "core/exec/virtual_runtime.hpp"
 #include "core/wire/memory/simulated_network.hpp"
@@ -22,9 +23,10 @@ std::int64_t stamp_of(const std_msgs::msg::Header& header) {
   return std::int64_t{header.stamp().sec()} * 1'000'000'000 + header.stamp().nanosec();
 }
 
-/// A robot in a box of walls, and what it sent in 10 s.
+/// A robot in a box of walls, and what it sent in 10 s. Its driver has the fault from 4 s to 7 s.
 struct Sent {
-  explicit Sent(double noise) : simulation(make(noise)) {
+  using Fault = std::function<void(RobotDriver&, bool begins)>;
+  explicit Sent(double noise, const Fault& fault = {}) : simulation(make(noise)) {
     const auto keep = [this](auto& samples, auto& clock) {
       return [&samples, &clock, this](const auto& sample, const wire::SampleInfo&) {
         samples.push_back(sample);
@@ -43,8 +45,15 @@ struct Sent {
       simulation.command(0, {0.3, 0.0, 0.5});
       simulation.step();
     });
+    if (fault) {
+      scheduler.run_until(kBegin);
+      fault(driver, true);
+      scheduler.run_until(kEnd);
+      fault(driver, false);
+    }
     scheduler.run_until(10s);
   }
+  static constexpr Duration kBegin{4s}, kEnd{7s};
 
   static Simulation make(double noise) {
     const std::array<Box, 2> walls{Box{8, 8.5, -8, 8, 0, 3}, Box{-8, 8, 6, 6.5, 0, 3}};
@@ -134,6 +143,58 @@ TEST(RobotDriver, WithNoiseSomeSamplesComeLateAndOdometryIsOvertaken) {
   EXPECT_GT(longest, 115ms) << "the delay of a scan varies";
   EXPECT_LT(longest, 200ms);
   EXPECT_GT(sent.odometry.back().pose().covariance()[0], 0.0);
+}
+
+/// How far the stamps of `changed` are from those of `usual`, by the time at which they came; both came at
+/// the same times.
+template <class Sample>
+std::vector<std::pair<Duration, std::int64_t>> offsets(const std::vector<Sample>& usual,
+                                                       const std::vector<Sample>& changed,
+                                                       const std::vector<Duration>& came) {
+  std::vector<std::pair<Duration, std::int64_t>> out;
+  EXPECT_EQ(usual.size(), changed.size());
+  for (std::size_t n = 0; n < std::min(usual.size(), changed.size()); ++n)
+    out.emplace_back(came[n], stamp_of(changed[n].header()) - stamp_of(usual[n].header()));
+  return out;
+}
+
+/// Stamps are `jump` ahead in what was sent during the fault; what comes up to 0.1 s later may be of either.
+void expect_jump(const std::vector<std::pair<Duration, std::int64_t>>& offsets, Duration jump) {
+  ASSERT_GT(offsets.size(), 90U);
+  for (const auto& [came, by] : offsets) {
+    const bool inside = came > Sent::kBegin + 100ms && came <= Sent::kEnd;
+    const bool outside = came <= Sent::kBegin || came > Sent::kEnd + 100ms;
+    if (!inside && !outside) continue;
+    ASSERT_EQ(by, inside ? jump.count() : 0) << seconds(came);
+  }
+}
+
+TEST(RobotDriver, ClockThatJumpsChangesTheStampsOfOneSensorAndNothingElse) {
+  const Sent usual(1.0);
+  const std::array<std::pair<Sensor, Duration>, 4> jumps{std::pair{Sensor::lidar, Duration(3600s)},
+                                                         {Sensor::odometry, 1'600'000'000s},
+                                                         {Sensor::imu, -10s},
+                                                         {Sensor::lidar, -7200s}};  // To before 1970.
+  for (const auto& [sensor, jump] : jumps) {
+    const auto change = [s = sensor, j = jump](RobotDriver& driver, bool begins) {
+      driver.jump_clock(s, begins ? j : -j);
+    };
+    const Sent sent(1.0, change);
+    const auto by = [s = sensor, j = jump](Sensor of) { return of == s ? j : Duration{}; };
+    expect_jump(offsets(usual.clouds, sent.clouds, sent.clouds_came), by(Sensor::lidar));
+    expect_jump(offsets(usual.odometry, sent.odometry, sent.odometry_came), by(Sensor::odometry));
+    expect_jump(offsets(usual.imu, sent.imu, sent.imu_came), by(Sensor::imu));
+    EXPECT_EQ(sent.clouds_came, usual.clouds_came);
+    EXPECT_EQ(sent.odometry_came, usual.odometry_came);
+    EXPECT_EQ(sent.imu_came, usual.imu_came);
+    EXPECT_EQ(sent.clouds.back().data(), usual.clouds.back().data());
+  }
+}
+
+TEST(RobotDriver, SilentImuSendsNothingAndNothingOfItLater) {
+  const Sent sent(0.0, [](RobotDriver& driver, bool begins) { driver.silence(Sensor::imu, begins); });
+  EXPECT_NEAR(sent.imu.size(), 697, 3);
+  EXPECT_NEAR(sent.odometry.size(), 500, 1);
 }
 
 }  // namespace

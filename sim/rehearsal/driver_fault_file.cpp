@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the faults of a robot's drive and sensors.
+#include "sim/rehearsal/scenario_parts.hpp"
+
+namespace adit::sim {
+namespace {
+
+using config::Node;
+
+constexpr double kFastestWheels = 2.0;  // m/s and rad/s: no platform of config/platforms/ is faster
+constexpr double kFarthestJump = 2e9;   // s: as far as a stamp's 32 bits of seconds go
+
+// Of those that drive: what flies has neither wheels nor legs that slip.
+std::string read_driving_robot(const Node& fault, const char* key, const Scenario& scenario) {
+  const std::string id = read_robot(fault, key, scenario);
+  const RobotSpec* robot = scenario.robot(id);
+  if (robot && robot->settings.platform.flies())
+    fault.child(key).fail(Reason::bad_argument, "expected a robot that drives or walks, not " + id);
+  return id;
+}
+
+// What may last to the end: 0.
+Duration read_open_length(const Node& fault) { return fault.has("for") ? read_length(fault) : Duration{}; }
+
+Sensor read_sensor(const Node& fault, const Scenario& scenario) {
+  const auto sensor = static_cast<Sensor>(fault.choice("sensor", sensor_words(), 0));
+  if (sensor == Sensor::imu && scenario.lidar != LidarKind::full)
+    fault.child("sensor").fail(Reason::bad_argument, "expected lidar: full, whose robots have an imu");
+  return sensor;
+}
+
+Slip read_slip(const Node& fault, const Scenario& scenario) {
+  Slip out;
+  out.robot = read_driving_robot(fault, "slip", scenario);
+  const std::vector<double> wheels =
+      fault.numbers("wheels", 2, 2, config::within(-kFastestWheels, kFastestWheels));
+  if (wheels.size() == 2) {
+    out.vx = wheels[0];
+    out.wz = wheels[1];
+  }
+  out.duration = read_length(fault);
+  return out;
+}
+
+TurnSlip read_turn_slip(const Node& fault, const Scenario& scenario) {
+  return {read_driving_robot(fault, "turn_slip", scenario),
+          fault.number("share", config::positive_up_to(1.0)), read_length(fault)};
+}
+
+DriverClock read_driver_clock(const Node& fault, const Scenario& scenario) {
+  const std::string robot = read_robot(fault, "driver_clock", scenario);
+  const double jump = fault.number("jump", config::within(-kFarthestJump, kFarthestJump));
+  return {robot, from_seconds(jump), read_sensor(fault, scenario), read_open_length(fault)};
+}
+
+}  // namespace
+
+Duration read_length(const Node& fault) {
+  return from_seconds(fault.number("for", config::positive_up_to(kLongestTime)));
+}
+
+const std::vector<std::string>& driver_fault_kinds() {
+  static const std::vector<std::string> kinds{"sensor_silent", "slip", "turn_slip", "driver_clock"};
+  return kinds;
+}
+
+void read_driver_fault(const Node& node, const std::string& kind, const Scenario& scenario, Fault& out) {
+  if (kind == "sensor_silent") {
+    const std::string robot = read_robot(node, "sensor_silent", scenario);
+    out.what = SensorSilent{robot, read_sensor(node, scenario), read_length(node)};
+  }
+  if (kind == "slip") out.what = read_slip(node, scenario);
+  if (kind == "turn_slip") out.what = read_turn_slip(node, scenario);
+  if (kind == "driver_clock") out.what = read_driver_clock(node, scenario);
+}
+
+}  // namespace adit::sim
