@@ -95,7 +95,14 @@ Result<void> RobotDriver::listen() {
 }
 
 std_msgs::msg::Header RobotDriver::header(Sensor sensor, Time stamp, const std::string& frame) {
-  return message_header(stamp + faults(sensor).clock, frame);
+  const SensorFaults& active = faults(sensor);
+  return message_header(active.stampless > 0 ? Time{} : stamp + active.clock, frame);
+}
+
+void RobotDriver::lose_columns(const ColumnLoss& loss, bool begins) {
+  if (begins) return losses_.push_back(loss);
+  const auto found = std::find(losses_.begin(), losses_.end(), loss);
+  if (found != losses_.end()) losses_.erase(found);
 }
 
 Time RobotDriver::simulated(Duration at) {
@@ -186,6 +193,8 @@ void RobotDriver::send_points() {
     return;
   }
   auto job = std::make_shared<SweepJob>(simulation_.sweep(robot_));
+  if (!losses_.empty()) job->loss = losses_.back();
+  job->covered = covers_ > 0;
   const Time begin = simulated(simulation_.now() - simulation_.sweep_duration()) + lidar_clock_;
   Duration delay = params_.scan_delay + from_seconds(noise_ * kUsualScanDelay * random_.uniform());
   if (random_.chance(noise_ * kLateScan)) delay += kLongestDelay;

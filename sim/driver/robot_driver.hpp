@@ -48,12 +48,18 @@ class RobotDriver {
   /// The stamps of a sensor are `by` off from now on; jumps add up, and the opposite one ends it. Its
   /// messages come at the same time as before.
   void jump_clock(Sensor sensor, Duration by) { faults(sensor).clock += by; }
+  /// The stamps of a sensor are 0 as long as this began more often than it ended.
+  void drop_stamps(Sensor sensor, bool begins) { faults(sensor).stampless += begins ? 1 : -1; }
+  /// Realistic: columns of sweeps are lost; of several losses the newest counts.
+  void lose_columns(const ColumnLoss& loss, bool begins);
+  /// Realistic: the lidar is covered, see SweepJob.
+  void cover(bool begins) { covers_ += begins ? 1 : -1; }
 
  private:
   struct Endpoints;
   /// Faults of one sensor that are active.
   struct SensorFaults {
-    int silences{};
+    int silences{}, stampless{};
     Duration clock{};
   };
   SensorFaults& faults(Sensor sensor) { return faults_[static_cast<std::size_t>(sensor)]; }
@@ -76,6 +82,8 @@ class RobotDriver {
   std::shared_ptr<Endpoints> endpoints_;  // shared with scans under way
   Time started_{};
   std::array<SensorFaults, 3> faults_{};
+  std::vector<ColumnLoss> losses_{};
+  int covers_{};
   double noise_;
   Random random_;                         ///< Of the timing.
   Time origin_{};                         ///< The driver's clock at the simulation's begin.

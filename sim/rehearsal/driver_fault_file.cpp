@@ -7,8 +7,9 @@ namespace {
 
 using config::Node;
 
-constexpr double kFastestWheels = 2.0;  // m/s and rad/s: no platform of config/platforms/ is faster
-constexpr double kFarthestJump = 2e9;   // s: as far as a stamp's 32 bits of seconds go
+constexpr double kFastestWheels = 2.0;   // m/s and rad/s: no platform of config/platforms/ is faster
+constexpr double kFarthestJump = 2e9;    // s: as far as a stamp's 32 bits of seconds go
+constexpr double kFarthestOrigin = 1e4;  // m and rad
 
 // Of those that drive: what flies has neither wheels nor legs that slip.
 std::string read_driving_robot(const Node& fault, const char* key, const Scenario& scenario) {
@@ -53,6 +54,32 @@ DriverClock read_driver_clock(const Node& fault, const Scenario& scenario) {
   return {robot, from_seconds(jump), read_sensor(fault, scenario), read_open_length(fault)};
 }
 
+DriverRestart read_restart(const Node& fault, const Scenario& scenario) {
+  DriverRestart out;
+  out.robot = read_robot(fault, "driver_restart", scenario);
+  const std::vector<double> origin =
+      fault.numbers("origin", 3, 3, config::within(-kFarthestOrigin, kFarthestOrigin));
+  if (origin.size() == 3) out.origin = {origin[0], origin[1], wrap_angle(origin[2])};
+  return out;
+}
+
+// Of a lidar whose beams are simulated one by one.
+std::string read_swept_robot(const Node& fault, const char* key, const Scenario& scenario) {
+  const std::string id = read_robot(fault, key, scenario);
+  if (scenario.lidar != LidarKind::full)
+    fault.child(key).fail(Reason::bad_argument, "expected lidar: full, whose beams are simulated one by one");
+  return id;
+}
+
+LoseColumns read_lost_columns(const Node& fault, const Scenario& scenario) {
+  LoseColumns out;
+  out.robot = read_swept_robot(fault, "lose_columns", scenario);
+  out.loss.share = fault.number("share", config::positive_up_to(1.0));
+  out.loss.time = static_cast<LostTime>(fault.choice("time", lost_time_words(), 0));
+  out.duration = read_length(fault);
+  return out;
+}
+
 }  // namespace
 
 Duration read_length(const Node& fault) {
@@ -60,7 +87,9 @@ Duration read_length(const Node& fault) {
 }
 
 const std::vector<std::string>& driver_fault_kinds() {
-  static const std::vector<std::string> kinds{"sensor_silent", "slip", "turn_slip", "driver_clock"};
+  static const std::vector<std::string> kinds{"sensor_silent", "slip",     "turn_slip",
+                                              "driver_clock",  "no_stamp", "driver_restart",
+                                              "lose_columns",  "cover"};
   return kinds;
 }
 
@@ -71,6 +100,13 @@ void read_driver_fault(const Node& node, const std::string& kind, const Scenario
   }
   if (kind == "slip") out.what = read_slip(node, scenario);
   if (kind == "turn_slip") out.what = read_turn_slip(node, scenario);
+  if (kind == "no_stamp") {
+    const std::string robot = read_robot(node, "no_stamp", scenario);
+    out.what = NoStamp{robot, read_sensor(node, scenario), read_open_length(node)};
+  }
+  if (kind == "driver_restart") out.what = read_restart(node, scenario);
+  if (kind == "lose_columns") out.what = read_lost_columns(node, scenario);
+  if (kind == "cover") out.what = Cover{read_swept_robot(node, "cover", scenario), read_length(node)};
   if (kind == "driver_clock") out.what = read_driver_clock(node, scenario);
 }
 

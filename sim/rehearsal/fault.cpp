@@ -108,6 +108,21 @@ std::pair<const char*, std::string> parts(const Fault& fault) {
             return Fields{"driver_clock", f.robot + fmt::format(", jump: {:.3f}", seconds(f.jump)) +
                                               sensor(f.sensor) + open_window(f.duration)};
           },
+          [](const NoStamp& f) {
+            return Fields{"no_stamp", f.robot + sensor(f.sensor) + open_window(f.duration)};
+          },
+          [](const DriverRestart& f) {
+            return Fields{"driver_restart", f.robot + fmt::format(", origin: [{:.3f}, {:.3f}, {:.3f}]",
+                                                                  f.origin.x, f.origin.y, f.origin.yaw)};
+          },
+          [](const LoseColumns& f) {
+            const std::string& time = lost_time_words()[static_cast<std::size_t>(f.loss.time)];
+            return Fields{"lose_columns", f.robot + fmt::format(", share: {:.3f}, time: ", f.loss.share) +
+                                              time + window(f.duration)};
+          },
+          [](const Cover& f) {
+            return Fields{"cover", f.robot + window(f.duration)};
+          },
       },
       fault.what);
 }

@@ -9,6 +9,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/time/time.hpp"
 #include "sim/driver/sensor.hpp"
+#include "sim/world/sweep.hpp"
 
 /// What goes wrong in a rehearsal, as its YAML file says it; docs/rehearsal.md is the reference.
 namespace adit::sim {
@@ -116,6 +117,28 @@ struct DriverClock {
   Sensor sensor{Sensor::lidar};
   Duration duration{};  ///< 0: to the end.
 };
+/// The stamps of a sensor are 0.
+struct NoStamp {
+  std::string robot{};
+  Sensor sensor{Sensor::lidar};
+  Duration duration{};  ///< 0: to the end.
+};
+/// The robot's driver is restarted: its odometry begins again at that pose of its frame, where the robot is.
+struct DriverRestart {
+  std::string robot{};
+  Pose2 origin{};
+};
+/// Packets of the robot's lidar are lost.
+struct LoseColumns {
+  std::string robot{};
+  ColumnLoss loss{};
+  Duration duration{};
+};
+/// Something, a hand, covers the robot's lidar, see SweepJob::covered.
+struct Cover {
+  std::string robot{};
+  Duration duration{};
+};
 /// A second computer with the name of that robot comes on the air: an agent with a disk of its own and no
 /// driver.
 struct Twin {
@@ -127,7 +150,7 @@ struct Fault {
   Duration at{};
   std::variant<Crash, Hang, CutLink, DegradeLink, Partition, Reorder, Duplicate, ClockJump, SensorSilent,
                StuckDrive, DiskFull, Forge, StuckStick, Find, Steer, OdometryReset, Twin, Slip, TurnSlip,
-               DriverClock>
+               DriverClock, NoStamp, DriverRestart, LoseColumns, Cover>
       what{};
 };
 

@@ -22,6 +22,8 @@ Traction& FaultPlayer::traction(const std::string& robot) {
   return stage_.simulation.traction(stage_.simulation.find(robot).value());
 }
 
+RobotDriver& FaultPlayer::driver(const std::string& robot) { return robots_.at(robot)->driver(); }
+
 void FaultPlayer::note(Result<void> result) {
   if (health_ && !result) health_ = std::move(result);
 }
@@ -88,8 +90,8 @@ void FaultPlayer::play(const ClockJump& fault) {
 }
 
 void FaultPlayer::play(const SensorSilent& fault) {
-  RobotDriver* driver = &robots_.at(fault.robot)->driver();
-  during(fault.duration, [driver, sensor = fault.sensor](bool begins) { driver->silence(sensor, begins); });
+  during(fault.duration,
+         [to = &driver(fault.robot), sensor = fault.sensor](bool begins) { to->silence(sensor, begins); });
 }
 
 void FaultPlayer::play(const StuckDrive& fault) {
@@ -107,9 +109,28 @@ void FaultPlayer::play(const TurnSlip& fault) {
 }
 
 void FaultPlayer::play(const DriverClock& fault) {
-  during(fault.duration, [driver = &robots_.at(fault.robot)->driver(), fault](bool begins) {
-    driver->jump_clock(fault.sensor, begins ? fault.jump : -fault.jump);
+  during(fault.duration, [to = &driver(fault.robot), fault](bool begins) {
+    to->jump_clock(fault.sensor, begins ? fault.jump : -fault.jump);
   });
+}
+
+void FaultPlayer::play(const NoStamp& fault) {
+  during(fault.duration, [to = &driver(fault.robot), sensor = fault.sensor](bool begins) {
+    to->drop_stamps(sensor, begins);
+  });
+}
+
+void FaultPlayer::play(const DriverRestart& fault) {
+  stage_.simulation.reset_odometry(stage_.simulation.find(fault.robot).value(), fault.origin);
+}
+
+void FaultPlayer::play(const LoseColumns& fault) {
+  during(fault.duration,
+         [to = &driver(fault.robot), loss = fault.loss](bool begins) { to->lose_columns(loss, begins); });
+}
+
+void FaultPlayer::play(const Cover& fault) {
+  during(fault.duration, [to = &driver(fault.robot)](bool begins) { to->cover(begins); });
 }
 
 void FaultPlayer::play(const DiskFull& fault) {

@@ -46,6 +46,10 @@ class FaultPlayer {
   void play(const Slip& fault);
   void play(const TurnSlip& fault);
   void play(const DriverClock& fault);
+  void play(const NoStamp& fault);
+  void play(const DriverRestart& fault);
+  void play(const LoseColumns& fault);
+  void play(const Cover& fault);
   void disturb(wire::Disturbance disturbance, Duration duration);
   void later(Duration duration, Task task);
   /// Calls `change(true)` now and `change(false)` after `duration`, unless that is 0.
@@ -55,6 +59,7 @@ class FaultPlayer {
     if (duration > Duration{}) later(duration, [change] { change(false); });
   }
   Traction& traction(const std::string& robot);
+  RobotDriver& driver(const std::string& robot);
   void note(Result<void> result);
 
   Stage& stage_;

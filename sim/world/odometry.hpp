@@ -54,9 +54,9 @@ class Odometry {
   void rise(double by) { height_ += scale_ * by; }
   /// Takes the true attitude at the end of a step of `dt` seconds; its height is not used.
   void lean(const Attitude& attitude, double dt);
-  /// Starts at zero again, as after a restart of the driver. Its errors stay as they are.
-  void reset() {
-    pose_ = {};
+  /// Begins again at `origin` of its frame, as after a restart of the driver. Its errors stay as they are.
+  void reset(const Pose2& origin = {}) {
+    pose_ = origin;
     height_ = 0.0;
     distance_ = turned_ = 0.0;
   }

@@ -96,8 +96,8 @@ class Simulation {
   void command(std::size_t robot, const Twist2& wanted) { robots_[robot].body.command(wanted); }
   /// Faults between a robot's drive and the ground, which may begin and end between two steps.
   Traction& traction(std::size_t robot) { return robots_[robot].traction; }
-  /// Its odometry starts at zero again, as after a restart of its driver.
-  void reset_odometry(std::size_t robot) { robots_[robot].odometry.reset(); }
+  /// Its odometry begins again at `origin` of its frame, as after a restart of its driver.
+  void reset_odometry(std::size_t robot, const Pose2& origin = {}) { robots_[robot].odometry.reset(origin); }
   const Truth& truth(std::size_t robot) const { return robots_[robot].truth; }
   /// Pose in `odom` (which begins at the start pose) and measured velocity.
   const Odometry& odometry(std::size_t robot) const { return robots_[robot].odometry; }

@@ -18,6 +18,8 @@ constexpr double kGrazing = 0.995;     // squared sine of the incidence beyond w
 constexpr double kEdge = 0.3;          // m: neighbouring beams that differ by more see an edge
 constexpr double kDustReach = 8.0;     // m: farther dust returns too little light
 constexpr std::uint64_t kDustSeed = 0x2545f4914f6cdd1dULL;
+constexpr double kWrapped = 4.2949668;  // s: nearly 2^32 ns
+constexpr std::uint64_t kLossSeed = 1, kCoverSeed = 2;
 constexpr double kDustAlbedo = 0.1;  // of what is left of a beam
 
 /// Albedo of the surface at a place: a fixed pattern of patches.
@@ -107,7 +109,26 @@ class Receiver {
   Random random_;
 };
 
+float lost_time(LostTime time, float own) {
+  switch (time) {
+    case LostTime::zero:
+      return 0.0f;
+    case LostTime::nan:
+      return std::nanf("");
+    case LostTime::wrapped:
+      return static_cast<float>(kWrapped);
+    case LostTime::kept:
+      return own;
+  }
+  return own;
+}
+
 }  // namespace
+
+const std::vector<std::string>& lost_time_words() {
+  static const std::vector<std::string> words{"zero", "nan", "wrapped", "kept"};
+  return words;
+}
 
 std::vector<SweepPoint> SweepJob::trace() const {
   const LidarParams& params = lidar->params();
@@ -120,6 +141,9 @@ std::vector<SweepPoint> SweepJob::trace() const {
       rings > 1 ? (params.highest - params.lowest) * M_PI / 180.0 / static_cast<double>(rings - 1) : 0.0;
   Receiver receiver(params, errors, 2.0 * M_PI / static_cast<double>(columns), ring_step, seed);
 
+  // Of their own: the faults leave the noise of the other beams alone.
+  Random of_loss(derive_seed(seed, kLossSeed)), of_cover(derive_seed(seed, kCoverSeed));
+  const double nearest = covered ? 0.0 : params.min_range;
   std::vector<SweepPoint> points;
   points.reserve(lidar->size());
   std::vector<Eigen::Vector3d> directions(rings);
@@ -162,10 +186,16 @@ std::vector<SweepPoint> SweepJob::trace() const {
         ranges[k] = std::min(ranges[k], cast_box(target, directions[k]));
     }
     const auto t = static_cast<float>(when * duration);
+    const bool lost = loss && of_loss.chance(loss->share);
     for (std::size_t k = 0; k < rings; ++k) {
       const Neighbours beam{ranges[k], before[k], k > 0 ? ranges[k - 1] : VoxelGrid::kNoHit};
-      const Receiver::Return got = receiver.measure(beam, sensor, directions[k]);
-      if (!(got.range >= params.min_range && got.range <= params.max_range)) continue;
+      Receiver::Return got = receiver.measure(beam, sensor, directions[k]);
+      if (lost) {
+        points.push_back({0, 0, 0, 0, lost_time(loss->time, t), static_cast<std::uint16_t>(k), 0});
+        continue;
+      }
+      if (covered) got = {of_cover.uniform(0.0, kCover), 255.0 * kBrightest};
+      if (!(got.range >= nearest && got.range <= params.max_range)) continue;
       const double flat = got.range * elevations[k].x();
       points.push_back({static_cast<float>(flat * azimuths[at].x()),
                         static_cast<float>(flat * azimuths[at].y()),

@@ -2,6 +2,8 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "sim/world/lidar.hpp"
@@ -32,6 +34,20 @@ struct LidarErrors {
   double dust{0.0};
 };
 
+/// Time that the points of a lost column state: 0, NaN, nearly 2^32 ns (a negative offset that wrapped), or
+/// their own.
+enum class LostTime { zero, nan, wrapped, kept };
+
+/// By LostTime, as they are written in a scenario.
+const std::vector<std::string>& lost_time_words();
+
+/// Columns of a sweep whose packets were lost: their points have no return, all coordinates are 0.
+struct ColumnLoss {
+  double share{};  ///< Of the columns, [0, 1].
+  LostTime time{LostTime::zero};
+  bool operator==(const ColumnLoss&) const = default;
+};
+
 /// All that one sweep of a lidar depends on, by value: trace() may run on another thread, later.
 struct SweepJob {
   std::shared_ptr<const World> world{};
@@ -42,10 +58,13 @@ struct SweepJob {
   std::vector<std::vector<BodyBox>> others{};  ///< In each interval.
   double duration{};                           ///< Of the sweep, s.
   std::uint64_t seed{};
+  std::optional<ColumnLoss> loss{};
+  bool covered{};  ///< Something lies on the lidar: every beam returns within kCover.
 
+  static constexpr double kCover = 0.3;  ///< m
   /// Traces each column from the pose at its own time; it begins behind and turns counter-clockwise. At most
   /// lidar->size() points, column by column, in each from the lowest ring up; beams without return are left
-  /// out.
+  /// out, but for those of lost columns.
   std::vector<SweepPoint> trace() const;
 };
 

@@ -35,6 +35,11 @@ TEST(OdometryReset, EndsInHold) {
   EXPECT_FALSE(run_jump(kStands).ok()) << "the fault makes no difference";
 }
 
+TEST(OdometryReset, OfADriverThatRestartsElsewhereInItsFrameEndsInHold) {
+  const char* faults = "faults:\n  - {at: 7, driver_restart: r1, origin: [30, -4, 2]}\n";
+  EXPECT_EQ(run_jump(std::string(faults) + kStands).complaints(), std::vector<std::string>{});
+}
+
 TEST(OdometryReset, WhileTheDriverIsSilentEndsInHold) {
   const char* faults = R"(faults:
   - {at: 7, sensor_silent: r1, sensor: odometry, for: 5}

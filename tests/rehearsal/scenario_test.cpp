@@ -174,12 +174,47 @@ TEST(Scenario, EveryFaultIsWrittenAsItIsRead) {
       "{at: 20.000, turn_slip: r1, share: 0.500, for: 2.000}",
       "{at: 21.000, driver_clock: r1, jump: 3600.000, sensor: lidar, for: 2.000}",
       "{at: 22.000, driver_clock: r2, jump: -10.000, sensor: odometry}",
-      "{at: 23.000, driver_clock: r2, jump: 1600000000.000, sensor: lidar}"};
+      "{at: 23.000, driver_clock: r2, jump: 1600000000.000, sensor: lidar}",
+      "{at: 24.000, no_stamp: r1, sensor: odometry, for: 2.000}",
+      "{at: 24.500, no_stamp: r1, sensor: lidar}",
+      "{at: 25.000, driver_restart: r1, origin: [1.000, -2.000, 3.000]}"};
   std::string all;
   for (const std::string& fault : faults) all += "  - " + fault + "\n";
   const auto s = parse_scenario(with("  - {at: 20, crash: r1}\n", all), "b.yaml");
   ASSERT_TRUE(s.ok()) << s.error().text;
   for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_EQ(to_yaml(s->faults[i]), faults[i]);
+}
+
+std::string swept(std::string text) { return text.replace(text.find("lidar: planar"), 13, "lidar: full"); }
+
+TEST(Scenario, FaultsOfSweepsAreWrittenAsTheyAreRead) {
+  const std::vector<std::string> faults{
+      "{at: 1.000, lose_columns: r1, share: 0.010, time: zero, for: 2.000}",
+      "{at: 2.000, lose_columns: r1, share: 0.010, time: nan, for: 2.000}",
+      "{at: 3.000, lose_columns: r1, share: 0.500, time: wrapped, for: 2.000}",
+      "{at: 4.000, lose_columns: r1, share: 1.000, time: kept, for: 2.000}",
+      "{at: 5.000, cover: r2, for: 2.000}",
+      "{at: 6.000, driver_clock: r2, jump: 1.000, sensor: imu}",
+      "{at: 7.000, no_stamp: r2, sensor: imu}",
+      "{at: 8.000, sensor_silent: r2, sensor: imu, for: 2.000}"};
+  std::string all;
+  for (const std::string& fault : faults) all += "  - " + fault + "\n";
+  const auto s = parse_scenario(swept(with("  - {at: 20, crash: r1}\n", all)), "b.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().text;
+  for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_EQ(to_yaml(s->faults[i]), faults[i]);
+}
+
+TEST(Scenario, FaultsOfSweepsSayWhatIsExpected) {
+  const std::array<std::pair<std::string, std::string>, 3> wrong{
+      std::pair<std::string, std::string>{"share: 0.1, time: tea, for: 3", "wrapped"},
+      {"share: 1.1, for: 3", "(0, 1]"},
+      {"share: 0.1", "'for'"}};
+  for (const auto& [rest, expected] : wrong) {
+    const auto s = parse_scenario(swept(with("crash: r1", "lose_columns: r1, " + rest)), "b.yaml");
+    ASSERT_FALSE(s.ok()) << rest;
+    EXPECT_EQ(s.error().text.find("b.yaml:15: "), 0U) << s.error().text;
+    EXPECT_NE(s.error().text.find(expected), std::string::npos) << s.error().text;
+  }
 }
 
 struct Bad {
@@ -272,6 +307,14 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"driver_clock_of_no_imu", "crash: r1", "driver_clock: r1, jump: 1, sensor: imu", 15,
             "lidar: full"},
         Bad{"driver_clock_in_a_station", "crash: r1", "driver_clock: op1, jump: 1", 15, "op1"},
+        Bad{"no_stamp_of_no_imu", "crash: r1", "no_stamp: r1, sensor: imu", 15, "lidar: full"},
+        Bad{"no_stamp_of_a_nose", "crash: r1", "no_stamp: r1, sensor: nose", 15, "odometry"},
+        Bad{"restart_to_two_numbers", "crash: r1", "driver_restart: r1, origin: [1, 2]", 15, "3"},
+        Bad{"restart_to_nowhere", "crash: r1", "driver_restart: r1", 15, "origin"},
+        Bad{"restart_that_lasts", "crash: r1", "driver_restart: r1, origin: [1, 2, 3], for: 3", 15, "for"},
+        Bad{"columns_of_a_planar_lidar", "crash: r1", "lose_columns: r1, share: 0.1, for: 3", 15,
+            "lidar: full"},
+        Bad{"cover_of_a_planar_lidar", "crash: r1", "cover: r1, for: 3", 15, "lidar: full"},
         Bad{"full_disk_of_a_station", "crash: r1", "disk_full: op1, for: 3", 15, "op1"},
         Bad{"find_by_nobody", "crash: r1", "finds: artifact", 15, "robot"},
         Bad{"find_by_a_station", "crash: r1", "finds: artifact, robot: op1", 15, "op1"},

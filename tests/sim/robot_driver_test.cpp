@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <functional>
 
@@ -189,6 +191,79 @@ TEST(RobotDriver, ClockThatJumpsChangesTheStampsOfOneSensorAndNothingElse) {
     EXPECT_EQ(sent.imu_came, usual.imu_came);
     EXPECT_EQ(sent.clouds.back().data(), usual.clouds.back().data());
   }
+}
+
+TEST(RobotDriver, WithoutStampsASensorsStampsAreZero) {
+  const Sent sent(0.0, [](RobotDriver& driver, bool begins) {
+    driver.jump_clock(Sensor::lidar, begins ? 5s : -5s);
+    driver.drop_stamps(Sensor::lidar, begins);
+    driver.drop_stamps(Sensor::imu, begins);
+  });
+  const auto expect_zero = [](const auto& samples, const std::vector<Duration>& came, bool dropped) {
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      if (came[n] > Sent::kBegin + 50ms && came[n] <= Sent::kEnd) {
+        ASSERT_EQ(stamp_of(samples[n].header()) == 0, dropped);
+      } else if (came[n] <= Sent::kBegin || came[n] > Sent::kEnd + 50ms) {
+        ASSERT_GT(stamp_of(samples[n].header()), 0);
+      }
+    }
+  };
+  expect_zero(sent.clouds, sent.clouds_came, true);
+  expect_zero(sent.imu, sent.imu_came, true);
+  expect_zero(sent.odometry, sent.odometry_came, false);
+}
+
+/// Points of a cloud as the driver laid them out.
+std::vector<SweepPoint> points_of(const sensor_msgs::msg::PointCloud2& cloud) {
+  std::vector<SweepPoint> out(cloud.width());
+  std::memcpy(out.data(), cloud.data().data(), out.size() * sizeof(SweepPoint));
+  return out;
+}
+
+TEST(RobotDriver, LostColumnsHaveNoReturnAndTheirTimeAsNamedAndTheOthersAreAsBefore) {
+  const Sent usual(0.0);
+  for (const LostTime time : {LostTime::zero, LostTime::nan, LostTime::wrapped, LostTime::kept}) {
+    const Sent sent(0.0, [&](RobotDriver& driver, bool begins) { driver.lose_columns({0.1, time}, begins); });
+    ASSERT_EQ(sent.clouds_came, usual.clouds_came);
+    std::size_t lost = 0, clouds = 0;
+    for (std::size_t n = 0; n < sent.clouds.size(); ++n) {
+      const auto all = points_of(usual.clouds[n]), left = points_of(sent.clouds[n]);
+      auto next = all.begin();  // Both are in the order of their beams.
+      std::size_t without = 0;
+      for (const SweepPoint& p : left) {
+        if (!p.position().isZero()) {
+          const auto same = [&](const SweepPoint& q) { return q.t == p.t && q.position() == p.position(); };
+          next = std::find_if(next, all.end(), same);
+          ASSERT_NE(next, all.end());
+          continue;
+        }
+        ++without;
+        const std::array<bool, 4> as_named{p.t == 0.0f, std::isnan(p.t), std::abs(p.t - 4.294967f) < 1e-5f,
+                                           p.t >= 0.0f && p.t < 0.1f};
+        ASSERT_TRUE(as_named[static_cast<std::size_t>(time)]) << p.t;
+      }
+      const bool outside = sent.clouds_came[n] <= Sent::kBegin || sent.clouds_came[n] > Sent::kEnd + 50ms;
+      ASSERT_TRUE(!outside || without == 0);
+      clouds += without > 0;
+      lost += without;
+    }
+    EXPECT_NEAR(clouds, 30, 1);
+    EXPECT_NEAR(lost / (clouds * 900.0 * 16.0), 0.1, 0.01);
+  }
+}
+
+TEST(RobotDriver, CoveredLidarSeesNothingFartherThanItsCover) {
+  const Sent sent(1.0, [](RobotDriver& driver, bool begins) { driver.cover(begins); });
+  int covered = 0;
+  for (std::size_t n = 0; n < sent.clouds.size(); ++n) {
+    double farthest = 0.0;
+    for (const SweepPoint& p : points_of(sent.clouds[n]))
+      farthest = std::max<double>(farthest, p.position().norm());
+    const bool outside = sent.clouds_came[n] <= Sent::kBegin || sent.clouds_came[n] > Sent::kEnd + 100ms;
+    EXPECT_TRUE(!outside || farthest > 2.0) << farthest;
+    covered += farthest < 0.3001;
+  }
+  EXPECT_NEAR(covered, 30, 1);
 }
 
 TEST(RobotDriver, SilentImuSendsNothingAndNothingOfItLater) {

@@ -138,6 +138,20 @@ TEST_P(TractionTest, WallStopsTheWheelsOfABodyThatSkids) {
   EXPECT_NEAR(s.odometry(0).pose().x, s.truth(0).distance, 1e-6);
 }
 
+TEST_P(TractionTest, RestartedDriverCountsOnFromTheOriginOfItsFrame) {
+  Simulation s = make(wheeled(), realistic());
+  drive(s, {0.5, 0, 0.4}, 3.0);
+  const Pose2 stood = s.truth(0).pose.planar(), origin{30.0, -4.0, 2.0};
+  s.reset_odometry(0, origin);
+  EXPECT_EQ(s.odometry(0).pose(), origin);
+  EXPECT_EQ(s.truth(0).pose.planar(), stood);
+  drive(s, {0.5, 0, 0.4}, 2.0);
+  const Pose2 expected = origin * (stood.inverse() * s.truth(0).pose.planar());
+  EXPECT_NEAR(s.odometry(0).pose().x, expected.x, 1e-6);
+  EXPECT_NEAR(s.odometry(0).pose().y, expected.y, 1e-6);
+  EXPECT_NEAR(s.odometry(0).pose().yaw, expected.yaw, 1e-6);
+}
+
 TEST(Traction, GyroSeesTheBodyTurnAndNoSpinOfItsWheels) {
   Simulation s = make(wheeled(), true);
   s.traction(0).turn_slip(0.5, true);
