@@ -155,6 +155,9 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (params.perception != PerceptionLevel::off) {
     e.keyframes = std::make_unique<KeyframeStore>(params.disk, strand, disk_strand);
     e.keyframes->load();
+    if (const std::string lost = e.keyframes->text(); !lost.empty())
+      e.notifier->to_all(Severity::error, "keyframes_damaged", Reason::cannot_read,
+                         params.name + ": " + lost);
   }
 
   const auto with_command = [&e](const auto& use) {

@@ -67,7 +67,7 @@ void Agent::CommandComponent::restore_place(const StoredFrames& stored) {
 
 void Agent::CommandComponent::compare_place(const std::shared_ptr<const Scan>& scan) {
   auto keyframes = context_.keyframes->of(frames_.odom_epoch());
-  if (keyframes.empty() && context_.keyframes->damaged() > 0)
+  if (keyframes.empty() && context_.keyframes->lost() > 0)
     return place_unknown("what it saw before cannot be read from its disk");
   context_.place.compare();
   perception::RecogniseParams recognise{};

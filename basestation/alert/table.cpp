@@ -63,6 +63,7 @@ constexpr std::array kRows{
     AlertRow{"state_lost", soon},
     AlertRow{"state_damaged", soon},
     AlertRow{"map_damaged", soon},
+    AlertRow{"keyframes_damaged", soon},
     AlertRow{"map_not_stored", soon},
     AlertRow{"findings_damaged", soon},
     AlertRow{"findings_full", soon},

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/store/preserve.hpp"
 #include "core/store/state_file.hpp"
 
 namespace adit::agent {
@@ -29,21 +30,53 @@ void KeyframeStore::load() {
   std::uint64_t newest = 0;
   for (std::size_t slot = 0; slot < kMax; ++slot) {
     const store::State state = store::StateFile(disk_, file_of(slot), kFormat).load();
-    if (state.found == store::LoadStatus::nothing) continue;
-    auto keyframe = state.found == store::LoadStatus::good
-                        ? perception::decode_keyframe(state.payload)
-                        : Result<perception::Keyframe>(Error{Reason::cannot_read, state.text});
-    if (!keyframe) {
-      ++damaged_;
-      (void)disk_->remove(file_of(slot));
-      continue;
-    }
+    auto keyframe = read(slot, state);
+    if (!keyframe) continue;
     slots_[slot] = std::move(*keyframe);
     if (state.generation < newest) continue;
     newest = state.generation;
     next_ = (slot + 1) % kMax;
   }
   generation_ = newest;
+}
+
+std::optional<perception::Keyframe> KeyframeStore::read(std::size_t slot, const store::State& state) {
+  switch (state.found) {
+    case store::LoadStatus::nothing:
+      return std::nullopt;
+    case store::LoadStatus::newer:
+    case store::LoadStatus::older:
+      ++other_version_;
+      left_alone_.insert(slot);
+      return std::nullopt;
+    case store::LoadStatus::unreadable:
+      ++unreadable_;
+      left_alone_.insert(slot);
+      return std::nullopt;
+    case store::LoadStatus::good:
+      if (auto keyframe = perception::decode_keyframe(state.payload)) return std::move(*keyframe);
+      [[fallthrough]];
+    case store::LoadStatus::torn:
+    case store::LoadStatus::corrupt:
+    case store::LoadStatus::foreign:
+      break;
+  }
+  ++damaged_;
+  const bool intact = state.found == store::LoadStatus::good;
+  if (store::set_aside(*disk_, file_of(slot), intact ? "corrupt" : store::name(state.found)).empty())
+    left_alone_.insert(slot);
+  return std::nullopt;
+}
+
+std::string KeyframeStore::text() const {
+  std::string out;
+  const auto add = [&out](std::size_t count, const char* what) {
+    if (count > 0) out += (out.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  };
+  add(damaged_, "damaged");
+  add(other_version_, "of another version");
+  add(unreadable_, "unreadable");
+  return out.empty() ? out : "files of what its lidar saw before the restart: " + out + "; none was deleted";
 }
 
 bool KeyframeStore::wants(const Eigen::Vector3d& position, std::uint32_t odom_epoch) const {
@@ -68,7 +101,7 @@ void KeyframeStore::add(perception::Keyframe keyframe) {
 }
 
 void KeyframeStore::write(std::size_t slot) {
-  if (!disk_) return;
+  if (!disk_ || left_alone_.contains(slot)) return;
   auto save = [file = store::StateFile(disk_, file_of(slot), kFormat), generation = ++generation_,
                bytes = perception::encode(*slots_[slot])] { (void)file.save(generation, bytes); };
   run(std::move(save));

@@ -2,10 +2,13 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "core/exec/executor.hpp"
 #include "core/store/disk.hpp"
+#include "core/store/state_file.hpp"
 #include "perception/place/keyframe.hpp"
 
 namespace adit::agent {
@@ -22,9 +25,14 @@ class KeyframeStore {
   /// `disk` null: nothing survives this process. `writer`: strand on which a slow disk is written.
   KeyframeStore(std::shared_ptr<store::Disk> disk, Executor& home, std::shared_ptr<Executor> writer);
 
-  /// Reads the files. Those that are damaged are removed and counted.
+  /// Reads the files, and counts those that cannot be used. No file is deleted (rule 9): damaged ones are set
+  /// aside (core/store/preserve.hpp); those of another version, and those that the disk refuses to read now,
+  /// stay, and their slots are not written by this process.
   void load();
-  std::size_t damaged() const { return damaged_; }
+  /// Files that could not be used.
+  std::size_t lost() const { return damaged_ + other_version_ + unreadable_; }
+  /// The same in words, by what is wrong with them; empty: none.
+  std::string text() const;
   /// Whether the robot moved by kSpacing since the last keyframe, so that one is to be made here.
   bool wants(const Eigen::Vector3d& position, std::uint32_t odom_epoch) const;
   /// Keeps a keyframe, unless it is empty.
@@ -33,6 +41,8 @@ class KeyframeStore {
   std::vector<perception::Keyframe> of(std::uint32_t odom_epoch) const;
 
  private:
+  /// The keyframe of a file; notes why there is none.
+  std::optional<perception::Keyframe> read(std::size_t slot, const store::State& state);
   void write(std::size_t slot);
   /// Runs a task that accesses the disk.
   void run(Task task);
@@ -41,8 +51,9 @@ class KeyframeStore {
   Executor& home_;
   std::shared_ptr<Executor> writer_;
   std::vector<std::optional<perception::Keyframe>> slots_;
-  std::size_t damaged_{};
-  std::size_t next_{};  ///< Slot of the next keyframe.
+  std::size_t damaged_{}, other_version_{}, unreadable_{};  ///< Files.
+  std::set<std::size_t> left_alone_{};                      ///< Slots that are not written.
+  std::size_t next_{};                                      ///< Slot of the next keyframe.
   std::optional<Eigen::Vector3d> last_{};
   std::uint32_t last_epoch_{};
   std::uint64_t generation_{};  ///< Of the last keyframe written.

@@ -5,6 +5,7 @@
 
 #include "core/exec/virtual_runtime.hpp"
 #include "core/store/memory_disk.hpp"
+#include "core/store/state_file.hpp"
 
 namespace adit::agent {
 namespace {
@@ -34,7 +35,7 @@ TEST_F(KeyframeStoreTest, KeepsOneAMetreOverARestart) {
   drive(*made(), 0, 5);
   const auto again = made();
   EXPECT_EQ(again->of(0).size(), 6U);
-  EXPECT_EQ(again->damaged(), 0U);
+  EXPECT_EQ(again->lost(), 0U);
   EXPECT_TRUE(again->of(1).empty());
 }
 
@@ -54,17 +55,37 @@ TEST_F(KeyframeStoreTest, ReplacesWhatItSawAtTheSamePlace) {
   EXPECT_LE(frames->of(0).size(), 12U);
 }
 
-TEST_F(KeyframeStoreTest, LeavesOutDamagedFiles) {
+TEST_F(KeyframeStoreTest, LeavesOutDamagedFilesAndSetsThemAside) {
   drive(*made(), 0, 5);
-  auto bytes = **disk->read("keyframe-02");
-  bytes[40] ^= 1;
-  disk->plant("keyframe-02", bytes);
-  bytes.resize(100);
-  disk->plant("keyframe-04", bytes);
+  auto flipped = **disk->read("keyframe-02");
+  flipped[40] ^= 1;
+  disk->plant("keyframe-02", flipped);
+  auto torn = flipped;
+  torn.resize(100);
+  disk->plant("keyframe-04", torn);
   const auto again = made();
-  EXPECT_EQ(again->damaged(), 2U);
+  EXPECT_EQ(again->lost(), 2U);
   EXPECT_EQ(again->of(0).size(), 4U);
-  EXPECT_EQ(made()->damaged(), 0U);
+  EXPECT_EQ(made()->lost(), 0U);
+  EXPECT_EQ(*disk->read("keyframe-02.corrupt"), flipped);
+  EXPECT_EQ(*disk->read("keyframe-04.torn"), torn);
+}
+
+TEST_F(KeyframeStoreTest, LeavesFilesOfANewerVersionAndUnreadableOnesAsTheyAre) {
+  drive(*made(), 0, 5);
+  const store::Bytes newer = store::encode_envelope({{'K', 'E', 'Y', 'F'}, 99, 64 * 1024}, 7, {});
+  disk->plant("keyframe-02", newer);
+  const auto unreadable = **disk->read("keyframe-04");
+  disk->set_refused("keyframe-04", true);
+  auto again = made();
+  disk->set_refused("keyframe-04", false);
+  EXPECT_EQ(again->lost(), 2U);
+  EXPECT_EQ(again->of(0).size(), 4U);
+  drive(*again, 100, 100 + 2 * static_cast<double>(KeyframeStore::kMax));
+  EXPECT_EQ(*disk->read("keyframe-02"), newer);
+  EXPECT_EQ(*disk->read("keyframe-04"), unreadable);
+  EXPECT_EQ(again->of(0).size(), KeyframeStore::kMax);
+  EXPECT_EQ(made()->of(0).size(), KeyframeStore::kMax - 1);
 }
 
 TEST_F(KeyframeStoreTest, SurvivesAFullDisk) {
