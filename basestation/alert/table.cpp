@@ -93,6 +93,7 @@ constexpr std::array kRows{
     AlertRow{"goal_moved", know},
     AlertRow{"made_way", know},
     AlertRow{"not_deskewed", know},
+    AlertRow{"clock_stepped", know},
     AlertRow{"imu_in_g", know},
     AlertRow{"stop_acknowledged", know},
 

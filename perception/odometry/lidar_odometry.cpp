@@ -25,6 +25,7 @@ constexpr double kInsertWay = 0.2,
 constexpr int kFirstClouds = 10;        ///< All of them enter the map.
 constexpr double kPlanarHeight = 0.15;  ///< A planar lidar's point stands for a wall of twice this, m.
 constexpr double kLevelRate = 0.003;    ///< How fast the frame is levelled, rad/s.
+constexpr double kMaxFree = 0.5;        ///< Without sensors of motion that the robot should have, s.
 constexpr std::uint64_t kImuPatience = 2'000'000'000;  ///< Wait for the first sample of an IMU, ns.
 
 /// Position and rotation by which the registered pose differs from the state.
@@ -60,7 +61,8 @@ LidarOdometryParams LidarOdometryParams::of(const Platform& platform, bool wheel
   p.map.noise = static_cast<float>(p.registration.range_noise);
   p.dense.min_range = p.thin.min_range = static_cast<float>(std::max(lidar.min_range, 0.3));
   p.dense.max_range = p.thin.max_range = static_cast<float>(lidar.max_range);
-  p.max_speed = platform.max_speed;
+  p.max_speed = p.motion.max_speed = platform.max_speed;
+  p.motion.max_turn = platform.max_turn;
   return p;
 }
 
@@ -104,7 +106,9 @@ void LidarOdometry::add(const ImuSample& sample) {
 void LidarOdometry::add(const BodyMotion& sample) {
   if (!params_.motion.has_wheels) return;
   if (!filter_.started()) watch_.add(sample);
-  if (!newest_wheels_ || sample.stamp > newest_wheels_->stamp) newest_wheels_ = sample;
+  if (!newest_wheels_ || sample.stamp > newest_wheels_->stamp ||
+      !same_clock(sample.stamp, newest_wheels_->stamp))
+    newest_wheels_ = sample;
   filter_.add(sample);
 }
 
@@ -132,7 +136,13 @@ bool LidarOdometry::start(std::uint64_t stamp) {
 
 bool LidarOdometry::advance(std::uint64_t stamp) {
   if (!filter_.started()) return start(stamp);
-  filter_.advance(stamp);
+  const int steps = filter_.clock_steps();
+  if (!filter_.advance(stamp)) return false;
+  if (steps != filter_.clock_steps()) {
+    last_stamp_ = stamp;
+    window_ = kMaxWindow;
+    good_ = 0;
+  }
   return true;
 }
 
@@ -241,7 +251,8 @@ void LidarOdometry::judge(const Registered& found) {
     if (horizontal && found.localizability.t[n] != Observability::strong) strong = false;
     if (yaw && found.localizability.r[n] != Observability::strong) strong = false;
   }
-  state_.health = strong ? Localisation::ok : Localisation::weak;
+  const bool moved = filter_.free_for() < kMaxFree || (!params_.motion.has_imu && !params_.motion.has_wheels);
+  state_.health = strong && moved ? Localisation::ok : Localisation::weak;
 }
 
 void LidarOdometry::apply(const Registered& found) {
@@ -293,13 +304,13 @@ void LidarOdometry::report() {
   Matrix6 turn = Matrix6::Identity();
   turn.block<3, 3>(3, 3) = rotation_of(local);
   const Matrix6 now = turn * s.P.topLeftCorner<6, 6>() * turn.transpose();
-  if (last_pose_ && dt > 0) {
+  if (last_pose_) {
     const Pose3 moved = last_pose_->inverse() * local;
     const Eigen::Vector3d turned = log_so3(moved.orientation);
     travelled_ += moved.position.norm();
     drift_.add(local.position - last_pose_->position, turned.norm(), reach_, state_.localizability,
                pose_covariance_, now);
-    if (!params_.motion.has_imu && !params_.motion.has_wheels)
+    if (dt > 0 && filter_.free_for() >= dt)
       filter_.set_rates((local.position - last_pose_->position) / dt, turned / dt);
   }
   pose_covariance_ = now;

@@ -51,7 +51,8 @@ class LidarOdometry {
   /// Whether the sensors of motion were heard up to `stamp`, as far as they speak at all.
   bool covers(std::uint64_t stamp) const { return filter_.covers(stamp); }
 
-  /// Moves the state to `stamp`; false while it cannot start yet.
+  /// Moves the state to `stamp`; false while it cannot start yet, and for a single stamp that is more than a
+  /// second away from the others. See MotionFilter::advance() for a clock that was set.
   bool advance(std::uint64_t stamp);
   /// T_odom_base at a stamp of the last 0.6 s, or up to 0.3 s ahead. Errors: out_of_range.
   Result<Pose3> at(std::uint64_t stamp) const;
@@ -63,6 +64,13 @@ class LidarOdometry {
   const OdometryState& update(std::span<const Eigen::Vector3f> points,
                               std::span<const std::uint8_t> skipped = {});
   const OdometryState& state() const { return state_; }
+  /// How often each sensor's clock was set, or the sensor was silent for longer than a second.
+  struct ClockSteps {
+    int lidar{}, imu{}, wheels{};
+  };
+  ClockSteps clock_steps() const {
+    return {filter_.clock_steps(), filter_.imu_clock_steps(), filter_.wheel_clock_steps()};
+  }
   /// The wheels' frame began again elsewhere.
   void forget_wheels() { filter_.forget_wheels(); }
 

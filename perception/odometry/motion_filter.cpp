@@ -10,7 +10,6 @@ namespace {
 using S = MotionState;
 
 constexpr std::uint64_t kStep = 10'000'000;               ///< ns
-constexpr std::uint64_t kMaxImuGap = 50'000'000;          ///< A longer gap between samples is bridged, ns.
 constexpr std::uint64_t kWheelPeriod = 40'000'000;        ///< Between two corrections by the wheels, ns.
 constexpr double kSlipGate = 12.0;                        ///< Squared standard deviations.
 constexpr double kMaxSlip = 1.5;                          ///< A slip that lasts longer is believed, s.
@@ -21,20 +20,13 @@ constexpr double kRestSpeed = 0.005, kRestTurn = 0.002;   ///< Standard deviatio
 /// error keeps its value, s. Half a degree is what makers of attitude sensors state for a body that moves.
 constexpr double kTiltSigma = 0.0087, kTiltTime = 2.0;
 constexpr double kLeastTilt = 1e-6;     ///< Less is no measurement, rad.
-constexpr double kForgetScale = 200.0;  ///< Way over which the scale may change, m.
-
-double to_seconds(std::uint64_t later, std::uint64_t earlier) {
-  return static_cast<double>(static_cast<std::int64_t>(later - earlier)) * 1e-9;
-}
-
-template <class Sample>
-void insert_sorted(std::deque<Sample>& samples, const Sample& sample, std::size_t most) {
-  auto at = samples.end();
-  while (at != samples.begin() && std::prev(at)->stamp > sample.stamp) --at;
-  if (at != samples.begin() && std::prev(at)->stamp == sample.stamp) return;
-  samples.insert(at, sample);
-  if (samples.size() > most) samples.pop_front();
-}
+constexpr double kForgetScale = 200.0;                    ///< Way over which the scale may change, m.
+constexpr double kSilentPeriods = 2.5;  ///< Between two sweeps of a slow lidar that is heard.
+constexpr double kSlowestSweeps = 2.0;  ///< Between two sweeps of one clock, s.
+/// How long the body may have moved while its lidar's clock was set, s: two sweeps at least; without scans
+/// autonomous modes stop after half a second.
+constexpr double kLeastUnseen = 0.5, kMostUnseen = 2.0;
+constexpr double kSteepest = 0.35;  ///< Slope of the ground that a body may have driven onto, rad.
 
 }  // namespace
 
@@ -64,16 +56,14 @@ void MotionFilter::start(std::uint64_t stamp, const Pose3& T_odom_base, const Ei
   history_.assign(1, {stamp, T_odom_base});
 }
 
-void MotionFilter::add(const ImuSample& sample) { insert_sorted(imu_, sample, kMaxSamples); }
 void MotionFilter::add(const BodyMotion& sample) {
   const Eigen::Vector3d up = sample.pose.orientation.conjugate() * Eigen::Vector3d::UnitZ();
   if (up.head<2>().norm() > kLeastTilt) leans_ = true;
-  insert_sorted(wheels_, sample, kMaxSamples);
+  wheels_.add(sample);
 }
 
 bool MotionFilter::covers(std::uint64_t stamp) const {
-  if (params_.has_imu && (imu_.empty() || imu_.back().stamp < stamp)) return false;
-  return !params_.has_wheels || (!wheels_.empty() && wheels_.back().stamp >= stamp);
+  return (!params_.has_imu || imu_.reaches(stamp)) && (!params_.has_wheels || wheels_.reaches(stamp));
 }
 
 Pose3 MotionFilter::base_pose(const MotionState& state) const {
@@ -84,69 +74,61 @@ Eigen::Vector3d MotionFilter::velocity() const {
   return state_.velocity - state_.rotation * gyro_.cross(params_.imu_position);
 }
 
-void MotionFilter::advance(std::uint64_t stamp) {
+bool MotionFilter::carried_to(std::uint64_t stamp) const {
+  return stamp > state_.stamp && ((params_.has_imu && imu_.cover(state_.stamp, stamp, kMaxImuGap)) ||
+                                  (params_.has_wheels && wheels_.cover(state_.stamp, stamp, kMaxMotionGap)));
+}
+
+bool MotionFilter::advance(std::uint64_t stamp) {
+  const double gap = seconds_between(state_.stamp, stamp);
+  if (std::abs(gap) > std::max(seconds_between(0, kClockStep), kSilentPeriods * period_) &&
+      !carried_to(stamp)) {
+    // The next stamp shows whether the clock was set, or this one is bad.
+    const double period = suspect_ != 0 ? seconds_between(suspect_, stamp) : 0.0;
+    suspect_ = stamp;
+    if (period <= 0 || period > kSlowestSweeps) return false;
+    period_ = period;
+    begin_again(stamp, std::clamp(gap, kLeastUnseen, kMostUnseen));
+  } else if (gap > 0) {
+    period_ = std::min(gap, kSlowestSweeps);
+  }
+  suspect_ = 0;
   while (state_.stamp < stamp) step(std::min(stamp, state_.stamp + kStep));
   propagate_covariance();
   use_attitude();
   // Samples are needed until the next advance() for interpolation, and no longer.
-  while (imu_.size() > 1 && imu_[1].stamp <= state_.stamp) imu_.pop_front();
-  while (wheels_.size() > 1 && wheels_[1].stamp <= std::min(wheels_used_, state_.stamp)) wheels_.pop_front();
+  imu_.forget(state_.stamp, state_.stamp);
+  wheels_.forget(std::min(wheels_used_, state_.stamp), state_.stamp);
+  return true;
 }
 
-std::optional<ImuSample> MotionFilter::imu_mean(std::uint64_t from, std::uint64_t to) const {
-  if (!params_.has_imu || imu_.empty()) return std::nullopt;
-  ImuSample mean;
-  int count = 0;
-  const ImuSample *before = nullptr, *after = nullptr;
-  for (const ImuSample& s : imu_) {
-    if (s.stamp <= from) {
-      before = &s;
-      continue;
-    }
-    if (s.stamp > to) {
-      after = &s;
-      break;
-    }
-    mean.gyro += s.gyro;
-    mean.accel += s.accel;
-    ++count;
-  }
-  if (count > 0) {
-    mean.gyro /= count;
-    mean.accel /= count;
-    return mean;
-  }
-  if (before && after && after->stamp - before->stamp <= kMaxImuGap) {
-    const double part = to_seconds((from + to) / 2, before->stamp) / to_seconds(after->stamp, before->stamp);
-    mean.gyro = before->gyro + part * (after->gyro - before->gyro);
-    mean.accel = before->accel + part * (after->accel - before->accel);
-    return mean;
-  }
-  if (before && !after && to - before->stamp <= kMaxImuGap) return *before;
-  return std::nullopt;
-}
-
-std::optional<Pose3> MotionFilter::wheels_at(std::uint64_t stamp) const {
-  const auto after =
-      std::find_if(wheels_.begin(), wheels_.end(), [&](const auto& w) { return w.stamp >= stamp; });
-  if (after == wheels_.end()) return std::nullopt;
-  if (after->stamp == stamp) return after->pose;
-  if (after == wheels_.begin()) return std::nullopt;
-  const auto before = std::prev(after);
-  if (after->stamp - before->stamp > kHistory) return std::nullopt;
-  const double part = to_seconds(stamp, before->stamp) / to_seconds(after->stamp, before->stamp);
-  return Pose3{before->pose.position + part * (after->pose.position - before->pose.position),
-               before->pose.orientation.slerp(part, after->pose.orientation)};
+void MotionFilter::begin_again(std::uint64_t stamp, double unseen) {
+  state_.stamp = wheels_used_ = attitude_used_ = stamp;
+  state_.velocity.setZero();
+  gyro_.setZero();
+  still_for_ = slipping_for_ = 0.0;
+  history_.assign(1, {stamp, base_pose(state_)});
+  ++clock_steps_;
+  // Whatever the body did meanwhile lies within these bounds; the standard deviation of what lies anywhere
+  // within a bound is that bound by the square root of three.
+  const auto square = [](double v) { return v * v / 3; };
+  state_.P.middleRows<3>(S::kV).setZero();
+  state_.P.middleCols<3>(S::kV).setZero();
+  auto diagonal = state_.P.diagonal();
+  diagonal.segment<3>(S::kP).array() += square(params_.max_speed * unseen);
+  diagonal.segment<2>(S::kR).array() += square(std::min(kSteepest, params_.max_turn * unseen));
+  diagonal[S::kR + 2] += square(std::min(M_PI, params_.max_turn * unseen));
+  diagonal.segment<3>(S::kV).array() += square(params_.max_speed);
 }
 
 void MotionFilter::step(std::uint64_t stamp) {
-  const double dt = to_seconds(stamp, state_.stamp);
+  const double dt = seconds_between(state_.stamp, stamp);
   const std::uint64_t from = state_.stamp;
-  const auto mean = imu_mean(from, stamp);
+  const auto mean = params_.has_imu ? mean_of(imu_, from, stamp) : std::nullopt;
   std::optional<Pose3> a, b;
   if (!mean && params_.has_wheels) {
-    a = wheels_at(from);
-    b = wheels_at(stamp);
+    a = pose_at(wheels_, from);
+    b = pose_at(wheels_, stamp);
   }
   if (mean)
     step_by_imu(dt, *mean);
@@ -154,6 +136,7 @@ void MotionFilter::step(std::uint64_t stamp) {
     step_by_wheels(dt, *a, *b);
   else
     step_free(dt);
+  free_for_ = mean || (a && b) ? 0.0 : free_for_ + dt;
   state_.stamp = stamp;
   if (mean && params_.has_wheels && stamp - wheels_used_ >= kWheelPeriod) use_wheels(wheels_used_, stamp);
   if (!mean) wheels_used_ = stamp;
@@ -186,7 +169,7 @@ void MotionFilter::step_by_wheels(double dt, const Pose3& from, const Pose3& to)
   gyro_ = log_so3(moved.orientation) / dt;
   pending_.rolled += pending_.rotation * moved.position;
   pending_.rotation = (pending_.rotation * moved.orientation).normalized();
-  pending_.blind_dt += dt;
+  pending_.rolled_dt += dt;
   pending_.turned += dt * gyro_.norm();
   pending_.way += moved.position.norm();
   const bool still = moved.position.norm() < kStillSpeed * dt && gyro_.norm() < kStillTurn;
@@ -197,20 +180,18 @@ void MotionFilter::step_free(double dt) {
   state_.position += dt * state_.velocity;
   state_.rotation = (state_.rotation * exp_so3(dt * gyro_)).normalized();
   pending_.rotation = (pending_.rotation * exp_so3(dt * gyro_)).normalized();
-  pending_.blind_dt += dt;
+  pending_.free_dt += dt;
   pending_.turned += dt * gyro_.norm();
 }
 
 void MotionFilter::propagate_covariance() {
-  const double dt = pending_.dt + pending_.blind_dt;
-  if (dt <= 0) return;
+  const double imu = pending_.dt, rolled = pending_.rolled_dt, free = pending_.free_dt;
+  if (imu + rolled + free <= 0) return;
   // Rotation at the beginning of the pending motion.
   const Eigen::Matrix3d R = (state_.rotation * pending_.rotation.conjugate()).toRotationMatrix();
   const Eigen::Matrix3d Dt = pending_.rotation.conjugate().toRotationMatrix();
-  const bool wheels = pending_.way > 0 || (pending_.blind_dt > 0 && params_.has_wheels && !wheels_.empty());
   S::Matrix F = S::Matrix::Identity();
   F.block<3, 3>(S::kR, S::kR) = Dt;
-  const double imu = pending_.dt;
   if (imu > 0) {
     F.block<3, 3>(S::kR, S::kBg) = -imu * Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d turned = -R * skew(pending_.velocity);
@@ -221,12 +202,11 @@ void MotionFilter::propagate_covariance() {
     F.block<3, 3>(S::kP, S::kBa) = -0.5 * imu * imu * R;
     F.block<2, 2>(S::kP, S::kG) = 0.5 * imu * imu * Eigen::Matrix2d::Identity();
   }
-  if (wheels) {
+  if (rolled > 0) {
     F.block<3, 3>(S::kP, S::kR) -= R * skew(state_.wheel_scale * pending_.rolled);
     F.block<3, 1>(S::kP, S::kS) = R * pending_.rolled;
-    if (imu == 0) F.block<3, 3>(S::kP, S::kV).setZero();
   }
-  if (imu > 0 || !wheels) F.block<3, 3>(S::kP, S::kV) = dt * Eigen::Matrix3d::Identity();
+  F.block<3, 3>(S::kP, S::kV) = (imu + free) * Eigen::Matrix3d::Identity();
   state_.P = (F * state_.P * F.transpose()).eval();
 
   auto diagonal = state_.P.diagonal();
@@ -239,31 +219,29 @@ void MotionFilter::propagate_covariance() {
     diagonal.segment<3>(S::kBg).array() += square(params_.gyro_walk) * imu;
     diagonal.segment<3>(S::kBa).array() += square(params_.accel_walk) * imu;
   }
-  if (pending_.blind_dt > 0) {
-    const double blind = pending_.blind_dt;
-    if (wheels) {
-      // Tilt of an attitude filter: 0.5 degrees over 2 s. Heading: skid and drift, 20 % of a turn.
-      diagonal.segment<2>(S::kR).array() += square(0.009) * blind;
-      diagonal[S::kR + 2] +=
-          square(0.02 * pending_.way) + square(0.2 * pending_.turned) + square(0.002) * blind;
-      const double slip = square(std::max(params_.wheel_slip, 0.1) * pending_.way) + square(0.01) * blind;
-      diagonal.segment<3>(S::kP).array() += slip;
-      diagonal.segment<3>(S::kV).array() += square(params_.max_acceleration * blind);
-    } else {
-      diagonal.segment<3>(S::kR).array() +=
-          square(params_.max_turn_acceleration * blind * blind) + square(0.01) * blind;
-      diagonal.segment<3>(S::kV).array() += square(params_.max_acceleration * blind);
-      diagonal.segment<3>(S::kP).array() += square(0.5 * params_.max_acceleration * blind * blind);
-    }
+  if (rolled > 0) {
+    // Tilt of an attitude filter: 0.5 degrees over 2 s. Heading: skid and drift, 20 % of a turn.
+    diagonal.segment<2>(S::kR).array() += square(0.009) * rolled;
+    diagonal[S::kR + 2] +=
+        square(0.02 * pending_.way) + square(0.2 * pending_.turned) + square(0.002) * rolled;
+    const double slip = square(std::max(params_.wheel_slip, 0.1) * pending_.way) + square(0.01) * rolled;
+    diagonal.segment<3>(S::kP).array() += slip;
+    diagonal.segment<3>(S::kV).array() += square(params_.max_acceleration * rolled);
+  }
+  if (free > 0) {
+    diagonal.segment<3>(S::kR).array() +=
+        square(params_.max_turn_acceleration * free * free) + square(0.01) * free;
+    diagonal.segment<3>(S::kV).array() += square(params_.max_acceleration * free);
+    diagonal.segment<3>(S::kP).array() += square(0.5 * params_.max_acceleration * free * free);
   }
   pending_ = {};
 }
 
 void MotionFilter::use_wheels(std::uint64_t from, std::uint64_t to) {
-  const auto a = wheels_at(from), b = wheels_at(to);
+  const auto a = pose_at(wheels_, from), b = pose_at(wheels_, to);
   wheels_used_ = to;
   if (!a || !b) return;
-  const double dt = to_seconds(to, from);
+  const double dt = seconds_between(from, to);
   const Pose3 moved = a->inverse() * *b;
   const Eigen::Vector3d rolled = moved.position / dt;
   const double wheel_turn = std::abs(log_so3(moved.orientation).z()) / dt;
@@ -304,9 +282,9 @@ void MotionFilter::use_wheels(std::uint64_t from, std::uint64_t to) {
 
 void MotionFilter::use_attitude() {
   if (!leans_ || state_.stamp <= attitude_used_) return;
-  const auto driver = wheels_at(state_.stamp);
+  const auto driver = pose_at(wheels_, state_.stamp);
   if (!driver) return;
-  const double dt = std::min(kTiltTime, to_seconds(state_.stamp, attitude_used_));
+  const double dt = std::min(kTiltTime, seconds_between(attitude_used_, state_.stamp));
   attitude_used_ = state_.stamp;
   if (params_.has_imu && !imu_.empty()) return;  // Its accelerometer knows better.
   // The driver's attitude is what an accelerometer would measure that feels no motion.
@@ -344,7 +322,7 @@ Result<Pose3> MotionFilter::at(std::uint64_t stamp) const {
   if (stamp > history_.back().stamp) {
     if (stamp - history_.back().stamp > kMaxExtrapolation)
       return {Reason::out_of_range, "the odometry has no pose yet at that time"};
-    const double dt = to_seconds(stamp, history_.back().stamp);
+    const double dt = seconds_between(history_.back().stamp, stamp);
     return Pose3{history_.back().pose.position + dt * velocity(),
                  (history_.back().pose.orientation * exp_so3(dt * gyro_)).normalized()};
   }
@@ -352,7 +330,7 @@ Result<Pose3> MotionFilter::at(std::uint64_t stamp) const {
       std::find_if(history_.begin(), history_.end(), [&](const Stamped& s) { return s.stamp >= stamp; });
   if (after->stamp == stamp) return after->pose;
   const auto before = std::prev(after);
-  const double part = to_seconds(stamp, before->stamp) / to_seconds(after->stamp, before->stamp);
+  const double part = seconds_between(before->stamp, stamp) / seconds_between(before->stamp, after->stamp);
   return Pose3{before->pose.position + part * (after->pose.position - before->pose.position),
                before->pose.orientation.slerp(part, after->pose.orientation)};
 }

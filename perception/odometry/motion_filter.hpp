@@ -8,8 +8,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/result/result.hpp"
 #include "perception/odometry/motion_state.hpp"
-#include "perception/types/body_motion.hpp"
-#include "perception/types/imu_sample.hpp"
+#include "perception/odometry/sample_queue.hpp"
 
 namespace adit::perception {
 
@@ -30,6 +29,8 @@ struct MotionParams {
   double gyro_scale{0.003};           ///< Standard deviation of the scale of a turn rate, (0, 0.5].
   double wheel_scale{0.02};           ///< Standard deviation of the wheels' scale at the start, (0, 0.5].
   double wheel_slip{0.03};            ///< Standard deviation of a speed by the wheels, share, (0, 1].
+  double max_speed{2.0};              ///< m/s, (0, 100].
+  double max_turn{2.0};               ///< rad/s, (0, 100].
   double max_acceleration{3.0};       ///< Of a body without IMU and wheels, m/s2, (0, 100].
   double max_turn_acceleration{3.0};  ///< The same, rad/s2, (0, 100].
 };
@@ -41,8 +42,7 @@ struct MotionParams {
 /// and a body at rest has no velocity. Samples may come in any order; advance() uses those up to its stamp.
 class MotionFilter {
  public:
-  static constexpr std::size_t kMaxSamples = 1024;        ///< Of each sensor; the oldest are dropped.
-  static constexpr std::uint64_t kHistory = 600'000'000;  ///< Of at(), ns.
+  static constexpr std::uint64_t kHistory = 600'000'000;           ///< Of at(), ns.
   static constexpr std::uint64_t kMaxExtrapolation = 300'000'000;  ///< Of at(), ns.
 
   explicit MotionFilter(const MotionParams& params) : params_(params) {}
@@ -54,13 +54,17 @@ class MotionFilter {
   bool started() const { return state_.stamp != 0; }
 
   /// A sample in the axes of base_link.
-  void add(const ImuSample& sample);
+  void add(const ImuSample& sample) { imu_.add(sample); }
   void add(const BodyMotion& sample);
-  /// Whether the sensors of motion were heard up to `stamp`.
+  /// Whether the sensors of motion were heard up to `stamp`, as far as they share its clock.
   bool covers(std::uint64_t stamp) const;
 
-  /// Moves the state to `stamp`, with all samples until then.
-  void advance(std::uint64_t stamp);
+  /// Moves the state to `stamp`, with all samples until then, in a bounded number of steps.
+  ///
+  /// A stamp that is not of the clock of the one before does nothing, and the result is false. When the next
+  /// one is of its clock, the clock was set: the state stands at its pose at the new stamp, with what the
+  /// body may have done meanwhile in its covariance.
+  bool advance(std::uint64_t stamp);
   /// T_odom_base on the way, extrapolated for a short time. Errors: out_of_range.
   Result<Pose3> at(std::uint64_t stamp) const;
   /// Replaces the state by its correction at the same stamp.
@@ -78,6 +82,12 @@ class MotionFilter {
   Pose3 pose() const { return base_pose(state_); }
   /// Of base_link, in odom, m/s.
   Eigen::Vector3d velocity() const;
+  /// How often the clock was set: of the stamps of advance(), of IMU and wheels.
+  int clock_steps() const { return clock_steps_; }
+  int imu_clock_steps() const { return imu_.clock_steps(); }
+  int wheel_clock_steps() const { return wheels_.clock_steps(); }
+  /// For how long no sensor of motion has moved the state, s.
+  double free_for() const { return free_for_; }
   /// The body is at rest, by its wheels and its gyro.
   bool at_rest() const { return still_for_ > 0.3; }
   /// Whether the scale of the wheels may be learned now: the lidar determines the direction of travel.
@@ -97,8 +107,10 @@ class MotionFilter {
   void step_free(double dt);
   /// Moves the covariance to the state.
   void propagate_covariance();
-  std::optional<ImuSample> imu_mean(std::uint64_t from, std::uint64_t to) const;
-  std::optional<Pose3> wheels_at(std::uint64_t stamp) const;
+  /// Whether sensors of motion went on until `stamp`, over a silence of the lidar of any length.
+  bool carried_to(std::uint64_t stamp) const;
+  /// The clock was set; the body moved for `unseen` (s) at most.
+  void begin_again(std::uint64_t stamp, double unseen);
   void use_wheels(std::uint64_t from, std::uint64_t to);
   /// Corrects tilt and gravity by the roll and pitch that the driver's odometry states.
   void use_attitude();
@@ -110,17 +122,21 @@ class MotionFilter {
   MotionParams params_;
   MotionState state_{};
   bool learn_scale_{true};
-  std::deque<ImuSample> imu_{};
-  std::deque<BodyMotion> wheels_{};
+  SampleQueue<ImuSample> imu_{};
+  SampleQueue<BodyMotion> wheels_{};
   Eigen::Vector3d gyro_{0, 0, 0};  ///< Turn rate over the last step, body axes, rad/s.
   std::uint64_t wheels_used_{};    ///< Until then the wheels corrected the velocity.
   std::uint64_t attitude_used_{};  ///< Until then the driver's attitude corrected the tilt.
   bool leans_{};                   ///< The driver states roll and pitch; a planar one states zero.
   double still_for_{};             ///< s
   double slipping_for_{};          ///< s
+  double free_for_{};              ///< s
+  double period_{};                ///< Between the last two stamps of advance(), s.
+  std::uint64_t suspect_{};        ///< A stamp of advance() that was of another clock; 0: none.
+  int clock_steps_{};
   /// The motion by which the covariance has not been moved yet.
   struct Pending {
-    double dt{}, blind_dt{};
+    double dt{}, rolled_dt{}, free_dt{};  ///< By IMU, by wheels, by neither, s.
     Eigen::Quaterniond rotation{Eigen::Quaterniond::Identity()};
     Eigen::Vector3d velocity{0, 0, 0};  ///< Change of the velocity by the specific force, body axes at first.
     Eigen::Vector3d rolled{0, 0, 0};    ///< Way by the wheels, body axes at first.

@@ -61,7 +61,7 @@ class PoseCorrection {
   double sigma() const;
 
  private:
-  double max_speed_, max_turn_;  ///< m/s, rad/s
+  double max_speed_, max_turn_;  ///< Of the body, in m/s and rad/s.
   Pose3 T_odom_driver_{}, wanted_{};
   std::optional<Pose3> T_odom_local_{};  ///< Nothing: the next report sets it.
   std::uint32_t instance_{}, jumps_{};

@@ -26,6 +26,7 @@ constexpr int kMaxNotDeskewed = 5;                   // consecutive scans before
 constexpr Duration kFramesCome = 1s;                 // for the frames of /tf_static after the first scan
 constexpr Duration kOdometryHeard = 200ms;           // two samples of the slowest odometry
 constexpr double kClocksApart = 0.5;                 // s; longer than any delay of a scan in its driver
+constexpr double kPairedWithin = 0.2;                // s; between a scan and the odometry heard with it
 
 }  // namespace
 
@@ -148,16 +149,40 @@ bool Scans::advance_odometry(const perception::Sweep& sweep) {
 
 std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
   const perception::OdometryState& state = odometry_->update(scan.points, scan.isolated);
-  const auto T_driver_base = history_.at(scan.stamp);
-  if (!T_driver_base) return std::nullopt;  // The driver's frame began again.
-  return OdometryReport{scan.stamp, state.pose,   state.pose * T_driver_base->inverse(),
-                        instance_,  state.health, state.sigma()};
+  if (const auto T_driver_base = history_.at(scan.stamp))
+    return OdometryReport{scan.stamp, state.pose,   state.pose * T_driver_base->inverse(),
+                          instance_,  state.health, state.sigma()};
+  const auto newest = history_.at(history_.newest());
+  // Otherwise the driver's frame began again, or it is silent.
+  const bool apart = perception::seconds_between(history_.newest(), scan.stamp) > kPairedWithin ||
+                     perception::seconds_between(scan.stamp, history_.newest()) > kClocksApart;
+  if (!newest || !apart || now() - odometry_heard_ > kOdometryHeard) return std::nullopt;
+  // The driver's clock is another one: what it sent last is of about the time of the scan.
+  const auto health = state.health == Localisation::ok ? Localisation::weak : state.health;
+  return OdometryReport{history_.newest(), state.pose, state.pose * newest->inverse(), instance_, health,
+                        std::hypot(state.sigma(), platform_.max_speed * kPairedWithin)};
+}
+
+void Scans::report_clock_steps() {
+  if (!odometry_) return;
+  const auto steps = odometry_->clock_steps(), before = std::exchange(clock_steps_, steps);
+  const auto report = [this](const std::string& topic, const char* sensor) {
+    warn(
+        topic, "clock_stepped", Reason::sensor_times,
+        std::string("the stamps of ") + sensor +
+            " went on more than a second later or earlier: its clock was set, or it was silent; the odometry "
+            "goes on from where it was");
+  };
+  if (steps.lidar != before.lidar) report(lidars_[0].topic, "the lidar");
+  if (steps.imu != before.imu && platform_.imu) report(platform_.imu->topic, "the IMU");
+  if (steps.wheels != before.wheels) report("odom", "the odometry");
 }
 
 void Scans::pass_on(std::size_t lidar) {
   const Waiting waiting = *std::exchange(waiting_[lidar], std::nullopt);
   // One clock for all, as without it nothing can be deskewed.
   const bool located = lidar == 0 && waiting.sweep.stamp != 0 && advance_odometry(waiting.sweep);
+  report_clock_steps();
   auto scan = input_.add(waiting.sweep, lidar, waiting.frame, [&](std::uint64_t stamp) {
     return located ? odometry_->at(stamp) : history_.at(stamp);
   });
@@ -183,7 +208,7 @@ void Scans::judge_clock(const perception::Sweep& sweep, bool deskewed) {
   const bool comparable = newest != 0 && now() - odometry_heard_ < kOdometryHeard;
   const double ahead =
       comparable && end != 0 ? static_cast<double>(static_cast<std::int64_t>(end - newest)) * 1e-9 : 0.0;
-  const bool apart = std::abs(ahead) > kClocksApart;
+  const bool apart = ahead > kPairedWithin || ahead < -kClocksApart;
   // The first sweep begins before the first pose.
   const bool bad = comparable && (apart || (sweep.timed && !deskewed));
   not_deskewed_ = bad ? not_deskewed_ + 1 : 0;
@@ -197,9 +222,10 @@ void Scans::judge_clock(const perception::Sweep& sweep, bool deskewed) {
   else if (apart)
     std::snprintf(
         text, sizeof text,
-        "lidar and odometry have different clocks, and scans are not corrected for motion: the scans "
-        "are %.1f s %s the odometry; let both drivers use one clock",
-        std::abs(ahead), ahead > 0 ? "ahead of" : "behind");
+        "lidar and odometry have different clocks, and %s: the scans are %.1f s %s the odometry; let both "
+        "drivers use one clock",
+        deskewed ? "the pose is weak" : "scans are not corrected for motion", std::abs(ahead),
+        ahead > 0 ? "ahead of" : "behind");
   else
     std::snprintf(text, sizeof text,
                   "the odometry has no poses for the times of the scans, which are not corrected for motion");

@@ -80,7 +80,10 @@ class Scans : public Component {
   void pass_on(std::size_t lidar);
   /// Moves the odometry to the end of a sweep of the first lidar; makes it when it is the first sweep.
   bool advance_odometry(const perception::Sweep& sweep);
+  /// Where the scan was taken. With a clock of its own, the driver's newest pose stands for that of the
+  /// scan's time, and the report is `weak` at best.
   std::optional<OdometryReport> locate(const perception::Scan& scan);
+  void report_clock_steps();
   void refuse(const std::string& topic, const Error& error);
   void warn(const std::string& topic, const char* code, Reason reason, const std::string& text);
   /// Warns of scans that cannot be corrected for motion.
@@ -94,6 +97,7 @@ class Scans : public Component {
   Platform platform_;
   std::uint32_t instance_;
   std::optional<perception::LidarOdometry> odometry_{};  ///< Made with the first sweep.
+  perception::LidarOdometry::ClockSteps clock_steps_{};  ///< Those that were reported.
   std::vector<std::optional<Waiting>> waiting_;          ///< For odometry as new as the sweep, by lidar.
   bool in_g_reported_{false};
   int not_deskewed_{0};  ///< Consecutive scans that were not corrected for motion, or of another clock.
