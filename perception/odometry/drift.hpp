@@ -15,6 +15,9 @@ class DriftAccount {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
+  /// Adds an error that is known only by its standard deviations: position (odom, m), rotation (odom axes,
+  /// rad).
+  void raise(const Eigen::Matrix<double, 6, 1>& sigma) { sum_.diagonal() += sigma.cwiseAbs2(); }
   void clear() { sum_.setZero(); }
   /// @param moved   How far the body moved since the last call, odom, m.
   /// @param turned  By how much it turned, rad.

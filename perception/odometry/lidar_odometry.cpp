@@ -10,83 +10,19 @@ namespace {
 
 using S = MotionState;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr std::size_t kLeastMatches = 40;  ///< Points with a plane nearby; fewer say nothing.
-constexpr double kLeastShare = 0.25;       ///< Of the points with a plane nearby that match it.
-constexpr int kBadForLost = 5;             ///< Clouds in a row that do not fit.
-constexpr int kBadForNewMap = 50;          ///< Clouds in a row after which it begins a new map.
-constexpr int kGoodForFound = 3;           ///< Clouds in a row that fit again.
-constexpr double kMaxInnovation = 30.0;    ///< Squared standard deviations for each of six numbers.
-constexpr int kFirstMotion = 5;            ///< Clouds in a row that fit, after which the motion is known.
-constexpr double kLeastWindow = 0.05, kMaxWindow = 1.0;  ///< m
 constexpr double kInsertWay = 0.2,
                  kInsertTurn = 0.05;    ///< Motion after which a cloud enters the map, m, rad.
+constexpr int kSearchPeriod = 10;       ///< Clouds between two comparisons with the map before it was lost.
 constexpr int kFirstClouds = 10;        ///< All of them enter the map.
 constexpr double kPlanarHeight = 0.15;  ///< A planar lidar's point stands for a wall of twice this, m.
 constexpr double kLevelRate = 0.003;    ///< How fast the frame is levelled, rad/s.
 constexpr double kMaxFree = 0.5;        ///< Without sensors of motion that the robot should have, s.
 constexpr std::uint64_t kImuPatience = 2'000'000'000;  ///< Wait for the first sample of an IMU, ns.
 
-/// Position and rotation by which the registered pose differs from the state.
-Vector6 innovation_of(const S& state, const Pose3& registered) {
-  Vector6 innovation;
-  innovation.head<3>() = registered.position - state.position;
-  innovation.tail<3>() = log_so3(state.rotation.conjugate() * registered.orientation);
-  return innovation;
-}
-
 Eigen::Matrix3d rotation_of(const Pose3& pose) { return pose.orientation.toRotationMatrix(); }
 
 }  // namespace
-
-double OdometryState::sigma() const {
-  // The larger eigenvalue of the horizontal part.
-  const double xx = covariance(0, 0), yy = covariance(1, 1), xy = covariance(1, 0);
-  return std::sqrt(std::max(0.0, (xx + yy) / 2 + std::hypot((xx - yy) / 2, xy)));
-}
-
-LidarOdometryParams LidarOdometryParams::of(const Platform& platform, bool wheels) {
-  LidarOdometryParams p;
-  const LidarConfig lidar = platform.lidar();
-  p.motion.has_imu = platform.imu.has_value();
-  p.motion.has_wheels = wheels;
-  p.motion.sideways = platform.sideways();
-  p.motion.flies = platform.flies();
-  if (platform.imu) p.motion.imu_position = platform.imu->mounting.position();
-  if (platform.drive == Drive::tracked) p.motion.wheel_slip = 0.05;
-  p.motion.max_acceleration = 2 * platform.max_acceleration;
-  p.motion.max_turn_acceleration = 2 * platform.max_turn_acceleration;
-  p.registration.range_noise = std::max(0.005, lidar.noise);
-  p.map.noise = static_cast<float>(p.registration.range_noise);
-  p.dense.min_range = p.thin.min_range = static_cast<float>(std::max(lidar.min_range, 0.3));
-  p.dense.max_range = p.thin.max_range = static_cast<float>(lidar.max_range);
-  p.max_speed = p.motion.max_speed = platform.max_speed;
-  p.motion.max_turn = platform.max_turn;
-  return p;
-}
-
-LidarOdometryParams LidarOdometryParams::clouds_only(double noise, double min_range, double max_range) {
-  LidarOdometryParams p;
-  p.motion.has_imu = p.motion.has_wheels = false;
-  p.motion.sideways = p.motion.flies = true;
-  p.registration.range_noise = noise;
-  // Poses are the lidar's own, so there is no error of a mounting or of a clock; what is left is the width of
-  // the beam.
-  p.registration.bearing_noise = 0.001;
-  p.registration.max_iterations = 10;
-  p.registration.has_prior = false;
-  p.map.line_clouds = 1;
-  p.map.wide = 0.0f;
-  // Nothing else holds the pose, so the cloud's own noise has to average out.
-  p.thin.wanted = 3000;
-  p.dense.wanted = 20000;
-  p.first_window = kMaxWindow;
-  p.map.noise = static_cast<float>(noise);
-  p.dense.min_range = p.thin.min_range = static_cast<float>(min_range);
-  p.dense.max_range = p.thin.max_range = static_cast<float>(max_range);
-  return p;
-}
 
 LidarOdometry::LidarOdometry(const LidarOdometryParams& params)
     : params_(params),
@@ -177,12 +113,14 @@ const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> poin
   Registered found;
   const bool first = map_.size() == 0;
   if (first) {
-    state_.health = thinned.size() < kLeastMatches ? Localisation::weak : Localisation::ok;
+    const bool placed = thinned.size() >= kLeastMatches && !state_.unplaced;
+    state_.health = placed ? Localisation::ok : Localisation::weak;
   } else {
     const Pose3 prior{filter_.state().position, filter_.state().rotation};
     const Matrix6 information = filter_.state().P.topLeftCorner<6, 6>().inverse();
     found = registration_.align(map_, body_points_, prior, information, window_);
     judge(found);
+    if (before_ && clouds_ % kSearchPeriod == 0) search_before();
   }
   state_.matched = found.matched;
   state_.used = thinned.size();
@@ -196,69 +134,10 @@ const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> poin
   return state_;
 }
 
-void LidarOdometry::judge(const Registered& found) {
-  const S& prior = filter_.state();
-  const Vector6 innovation = innovation_of(prior, found.pose);
-  const Matrix6 P = prior.P.topLeftCorner<6, 6>();
-  const double distance = innovation.dot(P.ldlt().solve(innovation)) / 6.0;
-  const double share =
-      static_cast<double>(found.matched) / static_cast<double>(std::max<std::size_t>(1, found.near));
-  const bool fits = share >= kLeastShare && distance < kMaxInnovation;
-  const double dt = last_stamp_ != 0 ? static_cast<double>(prior.stamp - last_stamp_) * 1e-9 : 0.0;
-  const bool too_fast =
-      params_.max_speed > 0 && dt > 0 && last_pose_ &&
-      (found.pose.position - prior.rotation * params_.motion.imu_position - last_pose_->position).norm() >
-          1.5 * params_.max_speed * dt + 0.2;
-  if (found.near < kLeastMatches) {
-    // An open place: there is nothing to compare with, and nothing that contradicts the other sensors.
-    state_.localizability = {};
-    filter_.learn_scale(false);
-    good_ = 0;
-    if (state_.health != Localisation::lost) state_.health = Localisation::weak;
-    return;
-  }
-  if (!fits || too_fast) {
-    ++bad_;
-    good_ = 0;
-    // KISS-ICP's rule alone never opens again after a bad start.
-    if (bad_ % 5 == 0) window_ = std::min(1.5 * window_, kMaxWindow);
-    if (bad_ >= kBadForLost) state_.health = Localisation::lost;
-    state_.localizability = {};
-    filter_.learn_scale(false);
-    if (bad_ >= kBadForNewMap) {
-      // What it saw before does not come back: the pose by the other sensors is the best there is.
-      map_.clear();
-      inserted_at_.reset();
-      bad_ = 0;
-    }
-    return;
-  }
-  bad_ = 0;
-  ++good_;
-  // What the prediction was off by at the distance of the points, as in KISS-ICP (Vizzo et al. 2023).
-  const double off = innovation.head<3>().norm() + innovation.tail<3>().norm() * reach_;
-  window_ = std::clamp(0.9 * window_ + 0.1 * 3.0 * off, std::max(kLeastWindow, std::min(off, kMaxWindow)),
-                       kMaxWindow);
-  // By then the first motion is known, and clouds that do not fit must not slip in.
-  if (good_ == kFirstMotion) window_ = std::max(kLeastWindow, std::min(window_, 3.0 * off));
-  apply(found);
-  if (state_.health == Localisation::lost && good_ < kGoodForFound) return;
-  bool strong = true;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto n = static_cast<std::size_t>(axis);
-    const bool horizontal = std::abs(found.localizability.axes_t(2, axis)) < 0.7;
-    const bool yaw = std::abs(found.localizability.axes_r(2, axis)) > 0.7;
-    if (horizontal && found.localizability.t[n] != Observability::strong) strong = false;
-    if (yaw && found.localizability.r[n] != Observability::strong) strong = false;
-  }
-  const bool moved = filter_.free_for() < kMaxFree || (!params_.motion.has_imu && !params_.motion.has_wheels);
-  state_.health = strong && moved ? Localisation::ok : Localisation::weak;
-}
-
 void LidarOdometry::apply(const Registered& found) {
   S next = filter_.state();
   const Matrix6 P = next.P.topLeftCorner<6, 6>();
-  const Vector6 innovation = innovation_of(next, found.pose);
+  const Eigen::Matrix<double, 6, 1> innovation = next.to(found.pose);
   // The scale of the wheels is learned from directions that the lidar determines, and only there.
   const Eigen::Vector3d v = filter_.velocity();
   bool seen = true;
@@ -293,6 +172,8 @@ void LidarOdometry::insert(std::span<const Eigen::Vector3f> points) {
   }
   map_.insert(map_points_, travelled_);
   map_.forget(travelled_);
+  space_.add(t, map_points_, travelled_);
+  space_.forget(travelled_);
   inserted_at_ = filter_.pose();
 }
 
@@ -306,14 +187,19 @@ void LidarOdometry::report() {
   const Matrix6 now = turn * s.P.topLeftCorner<6, 6>() * turn.transpose();
   if (last_pose_) {
     const Pose3 moved = last_pose_->inverse() * local;
-    const Eigen::Vector3d turned = log_so3(moved.orientation);
     travelled_ += moved.position.norm();
-    drift_.add(local.position - last_pose_->position, turned.norm(), reach_, state_.localizability,
-               pose_covariance_, now);
     if (dt > 0 && filter_.free_for() >= dt)
-      filter_.set_rates((local.position - last_pose_->position) / dt, turned / dt);
+      filter_.set_rates((local.position - last_pose_->position) / dt, log_so3(moved.orientation) / dt);
   }
-  pose_covariance_ = now;
+  if (bad_ == 0) {
+    // What does not enter the map is no drift of it: where the next cloud fits, it is found again.
+    if (drift_pose_)
+      drift_.add(local.position - drift_pose_->position,
+                 log_so3(drift_pose_->orientation.conjugate() * local.orientation).norm(), reach_,
+                 state_.localizability, pose_covariance_, now);
+    pose_covariance_ = now;
+    drift_pose_ = local;
+  }
   last_pose_ = local;
   last_stamp_ = s.stamp;
   if (dt > 0) level(dt);
@@ -324,6 +210,7 @@ void LidarOdometry::report() {
   state_.accel_bias = s.accel_bias;
   state_.wheel_scale = s.wheel_scale;
   state_.covariance = drift_.covariance() + now;
+  if (bad_ >= kBadForDoubt) state_.covariance.diagonal() += doubt().cwiseAbs2();
 }
 
 void LidarOdometry::level(double dt) {

@@ -8,6 +8,7 @@
 
 #include "core/config/platform.hpp"
 #include "perception/odometry/drift.hpp"
+#include "perception/odometry/known_space.hpp"
 #include "perception/odometry/motion_filter.hpp"
 #include "perception/odometry/odometry_state.hpp"
 #include "perception/odometry/registration.hpp"
@@ -43,6 +44,8 @@ struct LidarOdometryParams {
 /// cloud, in this order: advance() to its instant; at() for deskewing it; update().
 class LidarOdometry {
  public:
+  static constexpr double kMaxWindow = 1.0;  ///< A point farther from its plane never matches it, m.
+
   explicit LidarOdometry(const LidarOdometryParams& params);
 
   /// A sample in the axes of base_link, m/s2.
@@ -71,6 +74,12 @@ class LidarOdometry {
   ClockSteps clock_steps() const {
     return {filter_.clock_steps(), filter_.imu_clock_steps(), filter_.wheel_clock_steps()};
   }
+  /// The body's place was found by other means, as its operator or a comparison with stored scans. Moves the
+  /// frame, so that poses are `correction` times what they were; ends `lost` and `unplaced`.
+  ///
+  /// @param correction  In odom; it keeps the vertical.
+  /// @param sigma       Standard deviations of the corrected pose: horizontally, m; of the heading, rad.
+  void relocalised(const Pose3& correction, double sigma, double sigma_heading);
   /// The wheels' frame began again elsewhere.
   void forget_wheels() { filter_.forget_wheels(); }
 
@@ -78,6 +87,13 @@ class LidarOdometry {
   bool start(std::uint64_t stamp);
   void apply(const Registered& found);
   void judge(const Registered& found);
+  /// The cloud does not fit, for so much longer, s.
+  void miss(double dt);
+  void begin_map();
+  /// Compares the last cloud with the map before it was lost.
+  void search_before();
+  /// What the body may have done since the last cloud that fitted: standard deviations as in the covariance.
+  Eigen::Matrix<double, 6, 1> doubt() const;
   void insert(std::span<const Eigen::Vector3f> points);
   void report();
   /// Turns the frame of the odometry slowly until gravity is vertical in it.
@@ -85,10 +101,22 @@ class LidarOdometry {
   /// Frame in which the filter works to odom.
   Pose3 odom_pose(const Pose3& local) const { return T_odom_local_ * local; }
 
+  static constexpr std::size_t kLeastMatches = 40;  ///< Points with a plane nearby; fewer say nothing.
+  static constexpr int kBadForDoubt = 2;  ///< Clouds in a row that do not fit: more than an accident.
+  /// What it knew before it was lost.
+  struct Before {
+    VoxelPlanes map;
+    KnownSpace space;
+    DriftAccount drift;
+    int found{};  ///< Clouds in a row that fit it.
+  };
+
   LidarOdometryParams params_;
   MotionFilter filter_;
   Registration registration_;
   VoxelPlanes map_;
+  KnownSpace space_{};
+  std::optional<Before> before_{};
   Thinner dense_, thinner_;
   StartWatch watch_{};
   DriftAccount drift_{};
@@ -98,6 +126,9 @@ class LidarOdometry {
   Eigen::Matrix<double, 6, 6> pose_covariance_{
       Eigen::Matrix<double, 6, 6>::Zero()};  ///< After the last cloud.
   std::optional<Pose3> last_pose_{};         ///< Of the last cloud, local.
+  std::optional<Pose3> drift_pose_{};        ///< Of the last cloud that fitted, local.
+  double missed_for_{};                      ///< Since the last cloud that fitted, s.
+  bool established_{};                       ///< Enough clouds have fitted for a map to be lost in.
   std::uint64_t last_stamp_{};
   std::optional<Pose3> inserted_at_{};
   std::uint64_t first_imu_wait_{};

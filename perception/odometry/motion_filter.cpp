@@ -286,7 +286,7 @@ void MotionFilter::use_attitude() {
   if (!driver) return;
   const double dt = std::min(kTiltTime, seconds_between(attitude_used_, state_.stamp));
   attitude_used_ = state_.stamp;
-  if (params_.has_imu && !imu_.empty()) return;  // Its accelerometer knows better.
+  if (params_.has_imu && !imu_.samples().empty()) return;  // Its accelerometer knows better.
   // The driver's attitude is what an accelerometer would measure that feels no motion.
   const Eigen::Matrix3d R_inverse = state_.rotation.conjugate().toRotationMatrix();
   const Eigen::Vector3d expected = -(R_inverse * state_.gravity_vector());

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 
+#include "core/geometry/pose.hpp"
 #include "perception/odometry/so3.hpp"
 
 namespace adit::perception {
@@ -30,6 +31,13 @@ struct MotionState {
   Eigen::Vector3d gravity_vector() const {
     const double g = kStandardGravity;
     return {gravity.x(), gravity.y(), -std::sqrt(std::max(0.0, g * g - gravity.squaredNorm()))};
+  }
+  /// Position and rotation by which a pose of the body's point differs from this one, as in the error state.
+  Eigen::Matrix<double, 6, 1> to(const Pose3& pose) const {
+    Eigen::Matrix<double, 6, 1> off;
+    off.head<3>() = pose.position - position;
+    off.tail<3>() = log_so3(rotation.conjugate() * pose.orientation);
+    return off;
   }
   /// Adds an error state.
   void add(const Vector& dx) {

@@ -40,7 +40,12 @@ struct OdometryState {
   /// Of the pose since the start: position (odom, m), then rotation (odom axes, rad).
   Eigen::Matrix<double, 6, 6> covariance{Eigen::Matrix<double, 6, 6>::Zero()};
   Localizability localizability{};
+  /// `ok`: the lidar determines the horizontal position and the heading. `weak`: it leaves something of them
+  /// open, a sensor of motion is missing, or the pose is `unplaced`. `lost`: clouds do not fit the map.
   Localisation health{Localisation::starting};
+  /// After it was lost it began a new map, whose place is not known but for the covariance. It ends by
+  /// LidarOdometry::relocalised(), or when clouds fit the map before.
+  bool unplaced{};
   std::size_t matched{};  ///< Points that lie on a known plane.
   std::size_t used{};     ///< Points that were compared.
   int iterations{};

@@ -13,7 +13,7 @@ constexpr std::uint16_t kMaxPoints = 60;   ///< Further points do not change a v
 constexpr float kPlanar = 9.0f;            ///< A plane's second extent is at least 3 times its thickness.
 constexpr float kLineWidth = 0.12f;        ///< Standard deviation across the thickest line, m.
 constexpr double kSlack = 0.1;             ///< How far beside an empty voxel a plane is still found, m.
-constexpr float kFacing = 0.7f;            ///< Of a plane's normal, towards the border of its voxel.
+constexpr float kFacingBorder = 0.7f;      ///< Of a plane's normal, towards the border of its voxel.
 constexpr float kUpright = 0.9f;           ///< Vertical part of a line's direction.
 constexpr std::size_t kPointsInVoxel = 8;  ///< At least so many of a dense cloud share the smallest voxel.
 constexpr float kMaxIndex = 1e6f;          ///< Of a voxel along an axis.
@@ -145,7 +145,7 @@ std::optional<PlanePatch> VoxelPlanes::find(const Eigen::Vector3d& place, int to
     beside[axis] += inside[axis] < 0.5 * size ? -2 * depth - 1e-6 : 2 * depth + 1e-6;
     // Only what faces the border: a floor beyond it is another one's.
     const auto found = find_in(beside, top);
-    if (found && std::abs(found->normal[axis]) > kFacing) return found;
+    if (found && std::abs(found->normal[axis]) > kFacingBorder) return found;
   }
   return std::nullopt;
 }

@@ -153,6 +153,28 @@ TEST(OdometryOnADrive, TheHeightStaysOnLevelGround) {
   EXPECT_LT(standing, 0.01);
 }
 
+TEST(OdometryOnADrive, ADoorIntoAnotherRoomIsNoContradiction) {
+  DriveSpec spec;
+  // Two rooms with a door of 1.2 m in a wall of 0.3 m between them, and a pillar behind it.
+  const std::vector<Box> boxes{
+      {-0.2, 0, -4, 4, 0, 3}, {6, 6.3, -4, -0.6, 0, 3},  {6, 6.3, 0.6, 4, 0, 3},      {0, 6, -4.2, -4, 0, 3},
+      {0, 6, 4, 4.2, 0, 3},   {6.3, 20, -8.2, -8, 0, 3}, {6.3, 20, 8, 8.2, 0, 3},     {20, 20.2, -8, 8, 0, 3},
+      {6, 6.3, -8, -4, 0, 3}, {6, 6.3, 4, 8, 0, 3},      {9.5, 10.5, -0.5, 0.5, 0, 3}};
+  spec.world = std::make_shared<const World>(make_box_world(boxes, 0.0, 3.0).value());
+  spec.platform = config::load_platform("wheeled").value();
+  spec.start = {2, 0, 0};
+  spec.steps = {StandFor{1.5},          DriveTo{{7.5, 0}, 1.5}, DriveTo{{8, 4}, 1.5},   DriveTo{{15, 5}, 1.5},
+                DriveTo{{15, -4}, 1.5}, DriveTo{{8, -4}, 1.5},  DriveTo{{7.5, 0}, 1.5}, DriveTo{{2, 0}, 1.5}};
+  const DriveRecording drive = record_drive(spec).value();
+  for (const bool imu : {true, false}) {
+    const Outcome found = run(drive, spec.platform, imu, true);
+    EXPECT_EQ(found.lost, 0u);
+    EXPECT_LT(found.worst, 0.12);
+    EXPECT_TRUE(found.honest);
+    EXPECT_EQ(found.last, Localisation::ok);
+  }
+}
+
 TEST(OdometryOnADrive, TheSameDataGiveTheSamePoses) {
   DriveSpec spec = round_trip(5);
   spec.steps.resize(3);
