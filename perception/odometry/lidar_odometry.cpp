@@ -170,7 +170,7 @@ void LidarOdometry::insert(std::span<const Eigen::Vector3f> points) {
     map_points_.push_back(at + Eigen::Vector3d(0, 0, kPlanarHeight));
     map_points_.push_back(at - Eigen::Vector3d(0, 0, kPlanarHeight));
   }
-  map_.insert(map_points_, travelled_);
+  state_.refused = map_.insert(map_points_, filter_.pose().position, travelled_);
   map_.forget(travelled_);
   space_.add(t, map_points_, travelled_);
   space_.forget(travelled_);

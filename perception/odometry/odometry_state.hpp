@@ -48,6 +48,8 @@ struct OdometryState {
   bool unplaced{};
   std::size_t matched{};  ///< Points that lie on a known plane.
   std::size_t used{};     ///< Points that were compared.
+  /// Points of the last cloud that entered the map for which it had no room.
+  std::size_t refused{};
   int iterations{};
 
   /// Standard deviation of the horizontal position in its worst direction, m.

@@ -76,6 +76,27 @@ class FlatHash {
     }
     return at;
   }
+  /// Makes room: erases the costliest of the next `count` values from the slot `hand` on (modulo the capacity),
+  /// unless none costs more than `limit`; at least `count` values must be there. `hand` moves on behind them.
+  ///
+  /// @param cost  Called with a slot.
+  /// @return Whether a value was erased.
+  template <class Cost>
+  bool evict(std::size_t& hand, int count, float limit, const Cost& cost) {
+    std::size_t at = hand & (slots_.size() - 1), worst = slots_.size();
+    for (; count > 0; at = next(at)) {
+      if (slots_[at].key == kEmpty) continue;
+      --count;
+      if (const float each = cost(slots_[at]); each > limit) {
+        limit = each;
+        worst = at;
+      }
+    }
+    hand = at;
+    if (worst == slots_.size()) return false;
+    erase(worst);
+    return true;
+  }
   void clear() {
     for (Slot& slot : slots_) slot.key = kEmpty;
     size_ = 0;

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace adit::perception {
 namespace {
@@ -17,6 +18,8 @@ constexpr float kFacingBorder = 0.7f;      ///< Of a plane's normal, towards the
 constexpr float kUpright = 0.9f;           ///< Vertical part of a line's direction.
 constexpr std::size_t kPointsInVoxel = 8;  ///< At least so many of a dense cloud share the smallest voxel.
 constexpr float kMaxIndex = 1e6f;          ///< Of a voxel along an axis.
+constexpr double kReach = 80.0;            ///< A voxel takes points within so many of its edges.
+constexpr int kCandidates = 8;             ///< Voxels of which the costliest makes room for a new one.
 constexpr std::size_t kSweepPart = 64;     ///< Calls of forget() that visit the whole table.
 
 }  // namespace
@@ -34,25 +37,50 @@ void VoxelPlanes::add(Cell& cell, const Eigen::Vector3f& point) {
   cell.m2[5] += d.z() * e.z();
 }
 
-void VoxelPlanes::insert(std::span<const Eigen::Vector3d> points, double travelled) {
+std::size_t VoxelPlanes::insert(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& lidar,
+                                double travelled) {
+  const auto now = static_cast<float>(travelled);
+  std::size_t refused = 0;
   for (int level = 0; level < params_.levels; ++level) {
     FlatHash<Cell>& cells = levels_[static_cast<std::size_t>(level)];
     const float size = edge(level);
     const double scale = 1.0 / size;
+    const double reach = level + 1 < params_.levels ? kReach * size : std::numeric_limits<double>::infinity();
+    std::size_t without_room = 0;
     for (const Eigen::Vector3d& p : points) {
+      const double squared = (p - lidar).squaredNorm();
+      if (squared > reach * reach) continue;
       const Eigen::Vector3i at = (p * scale).array().floor().cast<int>();
       const std::uint64_t key = voxel_key(at.x(), at.y(), at.z());
       Cell* cell = cells.size() < params_.max_voxels ? &cells.at(key) : cells.find(key);
-      if (!cell) continue;
-      if (cell->clouds < 255 && (cell->clouds == 0 || cell->touched != static_cast<float>(travelled)))
-        ++cell->clouds;
-      cell->touched = static_cast<float>(travelled);
+      if (!cell) cell = make(level, key, lidar, static_cast<float>(std::sqrt(squared)), now);
+      if (!cell) {
+        ++without_room;
+        continue;
+      }
+      if (cell->clouds < 255 && (cell->clouds == 0 || cell->touched != now)) ++cell->clouds;
+      cell->touched = now;
       if (cell->count >= kMaxPoints) continue;
       add(*cell, (p - at.cast<double>() * static_cast<double>(size)).cast<float>());
       if (cell->count >= kFirstFit && cell->count >= std::uint32_t{cell->fitted} + cell->fitted / 2)
         fit(*cell, size);
     }
+    refused = std::max(refused, without_room);
   }
+  return refused;
+}
+
+VoxelPlanes::Cell* VoxelPlanes::make(int level, std::uint64_t key, const Eigen::Vector3d& lidar, float range,
+                                     float travelled) {
+  const auto n = static_cast<std::size_t>(level);
+  const float size = edge(level);
+  const Eigen::Vector3f from = (lidar / static_cast<double>(size)).cast<float>();
+  // The way until the body sees it again, if it turned round, and the way since it was seen.
+  const auto cost = [&](const FlatHash<Cell>::Slot& slot) {
+    return size * (voxel_of(slot.key).cast<float>() - from).norm() + travelled - slot.value.touched;
+  };
+  if (!levels_[n].evict(hand_[n], kCandidates, range, cost)) return nullptr;
+  return &levels_[n].at(key);
 }
 
 VoxelPlanes VoxelPlanes::of(std::span<const Eigen::Vector3f> points, const Params& params) {

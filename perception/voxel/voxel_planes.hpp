@@ -28,8 +28,10 @@ struct PlanePatch {
 ///
 /// Each voxel has the running moments of its first points, and a plane as soon as they lie on one. A lookup
 /// takes the coarsest voxel whose points lie on a plane: on a wall that is the largest one, which averages
-/// most noise; beside edges a smaller one. Voxels that were not touched while the body travelled
-/// `keep_distance` are erased, a few slots at a time.
+/// most noise; beside edges a smaller one. Points beyond 80 edges of a size enter only larger voxels, as there
+/// is less than one ring of a lidar in a small one there. Voxels that were not touched while the body
+/// travelled `keep_distance` are erased, a few slots at a time; at the bound, a new voxel takes the place of
+/// one that is farther or older.
 class VoxelPlanes {
  public:
   static constexpr int kMaxLevels = 5;
@@ -43,15 +45,20 @@ class VoxelPlanes {
     /// lines, too.
     std::uint8_t line_clouds{3};
     float wide{0.10f};               ///< Smaller extent of a plane, standard deviation per edge of the voxel.
-    std::size_t max_voxels{60'000};  ///< Of each level; further ones are not made.
+    std::size_t max_voxels{60'000};  ///< Of each size.
   };
   explicit VoxelPlanes(const Params& params) : params_(params) {}
   /// The planes of clouds that are complete (frame of the map, m). All points count, and a larger
   /// voxel is the sum of the smaller ones in it, so that this takes a fraction of the time of insert().
   static VoxelPlanes of(std::span<const Eigen::Vector3f> points, const Params& params);
 
-  /// Adds points (frame of the map, m). `travelled`: distance that the body moved so far, m.
-  void insert(std::span<const Eigen::Vector3d> points, double travelled);
+  /// Adds points (frame of the map, m).
+  ///
+  /// @param lidar      From where they were measured, m.
+  /// @param travelled  Distance that the body moved so far, m.
+  /// @return Points that found no room in the voxels of at least one size, as all of them are full of nearer
+  ///     and newer ones.
+  std::size_t insert(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& lidar, double travelled);
   /// The plane at a place, or just beside the largest voxel there; nothing: no points lie on one.
   std::optional<PlanePatch> find(const Eigen::Vector3d& place) const {
     return find(place, params_.levels - 1);
@@ -78,6 +85,8 @@ class VoxelPlanes {
     std::uint8_t clouds{};   ///< From how many clouds the points are, at most 255.
     bool plane{}, line{};
   };
+  /// The voxel of a new point at `range` (m); null: there is no room for it.
+  Cell* make(int level, std::uint64_t key, const Eigen::Vector3d& lidar, float range, float travelled);
   float edge(int level) const { return params_.finest * static_cast<float>(1 << level); }
   void fit(Cell& cell, float voxel_edge) const;
   /// Adds a point relative to the voxel's corner.
@@ -88,7 +97,7 @@ class VoxelPlanes {
 
   Params params_;
   std::array<FlatHash<Cell>, kMaxLevels> levels_{};
-  std::array<std::size_t, kMaxLevels> sweep_{};
+  std::array<std::size_t, kMaxLevels> sweep_{}, hand_{};
 };
 
 }  // namespace adit::perception
