@@ -11,7 +11,8 @@ namespace {
 
 constexpr Duration kRecognition = 150ms;  // Duration in rehearsal.
 constexpr Duration kKeyframe = 5ms;       // The same.
-constexpr Duration kLookAhead = 1s;       // Between two updates of what stations should get first.
+constexpr const char* kUnreadable = "what it saw before cannot be read from its disk";
+constexpr Duration kLookAhead = 1s;  // Between two updates of what stations should get first.
 
 }  // namespace
 
@@ -67,10 +68,10 @@ void Agent::CommandComponent::restore_place(const StoredFrames& stored) {
 
 void Agent::CommandComponent::compare_place(const std::shared_ptr<const Scan>& scan) {
   auto keyframes = context_.keyframes->of(frames_.odom_epoch());
-  if (keyframes.empty() && context_.keyframes->lost() > 0)
-    return place_unknown("what it saw before cannot be read from its disk");
+  if (keyframes.empty() && context_.keyframes->lost() > 0) return place_unknown(kUnreadable);
   context_.place.compare();
   perception::RecogniseParams recognise{};
+  recognise.planar = scan->planar;
   recognise.noise = std::max(recognise.noise, params_.platform.lidar().noise);
   compute(
       {.name = "place", .modelled = kRecognition, .deadline = 5s},
@@ -85,11 +86,23 @@ void Agent::CommandComponent::compare_place(const std::shared_ptr<const Scan>& s
 void Agent::CommandComponent::place_compared(const Result<perception::RecognisedPlace>& found) {
   constexpr int kComparisons = 3;
   if (!found && (found.reason() != Reason::not_localised_here || ++comparisons_ < kComparisons))
-    return context_.place.begin();  // The next scan may show more.
+    return context_.place.again();  // The next scan may show more.
   if (!found) return place_unknown(found.error().text);
-  context_.place.confirm();
-  if (found->compared) correction_.shift(found->correction);
-  if (found->compared && log().on(LogLevel::info)) log().info("the surroundings are as before the restart");
+  switch (found->match) {
+    case perception::PlaceMatch::cannot_tell:
+      if (!context_.place.wait_for_better(now()))
+        place_unknown(
+            "its lidar shows too little to tell: look whether it is covered, dirty, or not turning");
+      return;
+    case perception::PlaceMatch::nothing_stored:
+      if (context_.keyframes->lost() > 0) return place_unknown(kUnreadable);
+      return context_.place.confirm();
+    case perception::PlaceMatch::found:
+      context_.place.confirm();
+      correction_.shift(found->correction);
+      if (log().on(LogLevel::info)) log().info("the surroundings are as before the restart");
+      return;
+  }
 }
 
 void Agent::CommandComponent::place_unknown(const std::string& why) {
@@ -122,6 +135,7 @@ void Agent::CommandComponent::add_waiting_scan() {
   if (waiting.odometry) correction_.take(*waiting.odometry, now());
   auto scan = std::make_shared<Scan>();
   scan->points = std::move(*waiting.points);
+  scan->planar = waiting.planar;
   const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
   // Without a common clock the newest pose is the best guess.
   scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
@@ -140,7 +154,7 @@ void Agent::CommandComponent::make_keyframe(const std::shared_ptr<const Scan>& s
   compute(
       {.name = "make keyframe", .modelled = kKeyframe, .latest_only = true},
       [scan, epoch = frames_.odom_epoch()] {
-        return perception::make_keyframe(scan->points, scan->located, epoch);
+        return perception::make_keyframe(scan->points, scan->located, epoch, scan->planar);
       },
       [this](Result<perception::Keyframe> keyframe) {
         if (keyframe) context_.keyframes->add(std::move(*keyframe));

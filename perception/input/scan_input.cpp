@@ -221,6 +221,20 @@ std::size_t ScanInput::add_points(const Source& source, const Sweep& sweep, cons
   return below;
 }
 
+bool ScanInput::is_planar(const Sweep& sweep, std::size_t index, const std::string& frame) const {
+  constexpr float kFlat = 1e-3f;  // m; the coordinates of one ring are computed, and agree but for rounding.
+  if (sweep.planar || index >= sources_.size()) return sweep.planar;
+  const bool in_base = frame_name(frame) == "base_link" || frame.empty();
+  const auto height = in_base ? static_cast<float>(sources_[index].lidar.mounting.z) : 0.0f;
+  bool any = false;
+  for (const TimedPoint& point : sweep.points) {
+    if (!point.position.allFinite()) continue;
+    if (std::abs(point.position.z() - height) > kFlat) return false;
+    any = true;
+  }
+  return any;
+}
+
 Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index, const std::string& frame,
                                            const PoseFunction& pose) {
   if (index >= sources_.size()) return Error{Reason::bad_argument, "the platform has no such lidar"};
@@ -238,6 +252,7 @@ Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index
 
   Scan scan;
   scan.stamp = end_of(sweep);
+  scan.planar = index == 0 && is_planar(sweep, index, frame);
   auto attitude = attitude_at(scan.stamp);
   if (!attitude) return attitude.error();
   scan.attitude = *attitude;

@@ -37,6 +37,7 @@ struct Scan {
   PointCloud points{};    ///< In base_link at `stamp`, m.
   /// One for each point, not 0: without a neighbour, as dust. Empty unless asked for by mark_isolated().
   std::vector<std::uint8_t> isolated{};
+  bool planar{false};               ///< The first lidar has one horizontal ring.
   Eigen::Vector3f origin{0, 0, 0};  ///< Of the rays: the first lidar in base_link, m.
   /// R_level_base: roll and pitch of the body by its IMU. Nothing: the attitude is the odometry's.
   std::optional<Eigen::Quaterniond> attitude{};
@@ -75,6 +76,9 @@ class ScanInput {
   /// The last instant of a sweep, to which its points are moved, ns. Poses up to it are needed for deskewing.
   static std::uint64_t end_of(const Sweep& sweep);
 
+  /// Whether the sweep is of one horizontal ring: a planar scanner's, or a cloud whose points all lie at the
+  /// height of lidar `index`. `frame`: its frame_id.
+  bool is_planar(const Sweep& sweep, std::size_t index, const std::string& frame) const;
   /// One sweep of lidar `index` of Platform::all_lidars(). Nothing when it waits for a sweep of the first
   /// lidar.
   ///

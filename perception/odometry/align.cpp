@@ -138,7 +138,7 @@ Alignment align(const VoxelPlanes& target, std::span<const Eigen::Vector3f> sour
   registering.range_noise = params.range_noise;
   registering.bearing_noise = 0.001;
   registering.huber = 3.0;
-  registering.has_prior = false;
+  registering.has_prior = params.keeps_undetermined;
   registering.max_iterations = 20;
   Registration registration(registering);
   const Eigen::Matrix<double, 6, 6> no_prior = Eigen::Matrix<double, 6, 6>::Zero();

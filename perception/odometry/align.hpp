@@ -15,7 +15,10 @@ struct AlignParams {
   double search_distance{0.0};  ///< Poses so far from the guess are tried, too, horizontally, m, [0, 3].
   double search_angle{0.0};     ///< Also those that are turned so far about the vertical, rad, [0, pi].
   double window{1.0};           ///< A point so far from a plane still matches it at first, m, (0, 5].
-  float voxel{0.25f};           ///< The source's points are averaged in voxels of this edge, m, [0.05, 5].
+  /// A direction that the cloud does not determine keeps the guess's value, as the height where no floor is
+  /// seen. Otherwise it follows what few points say of it.
+  bool keeps_undetermined{false};
+  float voxel{0.25f};  ///< The source's points are averaged in voxels of this edge, m, [0.05, 5].
 };
 
 /// Less overlap says that a scan belongs elsewhere; scans of the same kind and a target of all places around.

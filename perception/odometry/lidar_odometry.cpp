@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "perception/voxel/planar.hpp"
+
 namespace adit::perception {
 namespace {
 
@@ -15,7 +17,6 @@ constexpr double kInsertWay = 0.2,
                  kInsertTurn = 0.05;    ///< Motion after which a cloud enters the map, m, rad.
 constexpr int kSearchPeriod = 10;       ///< Clouds between two comparisons with the map before it was lost.
 constexpr int kFirstClouds = 10;        ///< All of them enter the map.
-constexpr double kPlanarHeight = 0.15;  ///< A planar lidar's point stands for a wall of twice this, m.
 constexpr double kLevelRate = 0.003;    ///< How fast the frame is levelled, rad/s.
 constexpr double kMaxFree = 0.5;        ///< Without sensors of motion that the robot should have, s.
 constexpr std::uint64_t kImuPatience = 2'000'000'000;  ///< Wait for the first sample of an IMU, ns.
@@ -165,10 +166,10 @@ void LidarOdometry::insert(std::span<const Eigen::Vector3f> points) {
   map_points_.clear();
   for (const Eigen::Vector3f& p : points) {
     const Eigen::Vector3d at = R * (p.cast<double>() - params_.motion.imu_position) + t;
-    map_points_.push_back(at);
-    if (!params_.planar) continue;
-    map_points_.push_back(at + Eigen::Vector3d(0, 0, kPlanarHeight));
-    map_points_.push_back(at - Eigen::Vector3d(0, 0, kPlanarHeight));
+    if (params_.planar)
+      add_piece_of_wall(map_points_, at);
+    else
+      map_points_.push_back(at);
   }
   state_.refused = map_.insert(map_points_, filter_.pose().position, travelled_);
   map_.forget(travelled_);

@@ -17,8 +17,8 @@ float unpacked(std::int64_t value) { return static_cast<float>(value) * kMillime
 }  // namespace
 
 Keyframe make_keyframe(std::span<const Eigen::Vector3f> points, const Pose3& T_odom_base,
-                       std::uint32_t odom_epoch) {
-  Keyframe keyframe{T_odom_base, odom_epoch, {}};
+                       std::uint32_t odom_epoch, bool planar) {
+  Keyframe keyframe{T_odom_base, odom_epoch, planar, {}};
   Thinner thinner({.wanted = Keyframe::kMaxPoints * 3 / 4,
                    .min_edge = 0.05f,
                    .min_range = 0.3f,
@@ -32,7 +32,7 @@ Keyframe make_keyframe(std::span<const Eigen::Vector3f> points, const Pose3& T_o
 
 std::vector<std::uint8_t> encode(const Keyframe& keyframe) {
   store::Packer out;
-  out.put(keyframe.odom_epoch);
+  out.put(keyframe.odom_epoch).flag(keyframe.planar);
   const Pose3& pose = keyframe.T_odom_base;
   for (int axis = 0; axis < 3; ++axis) out.put(pose.position[axis]);
   for (int part = 0; part < 4; ++part) out.put(pose.orientation.coeffs()[part]);
@@ -42,10 +42,11 @@ std::vector<std::uint8_t> encode(const Keyframe& keyframe) {
   return out.bytes();
 }
 
-Result<Keyframe> decode_keyframe(std::span<const std::uint8_t> bytes) {
+Result<Keyframe> decode_keyframe(std::span<const std::uint8_t> bytes, std::uint16_t version) {
   store::Unpacker in(bytes);
   Keyframe keyframe;
   keyframe.odom_epoch = in.get<std::uint32_t>();
+  if (version >= 2) keyframe.planar = in.flag();
   for (int axis = 0; axis < 3; ++axis) keyframe.T_odom_base.position[axis] = in.number();
   for (int part = 0; part < 4; ++part) keyframe.T_odom_base.orientation.coeffs()[part] = in.number();
   const std::uint64_t count = in.varint();

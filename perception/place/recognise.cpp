@@ -4,14 +4,21 @@
 #include <cmath>
 #include <cstdio>
 
+#include "perception/place/surfaces.hpp"
+
 namespace adit::perception {
 namespace {
 
-constexpr double kNear = 25.0;             ///< Keyframes within this distance show the same surfaces, m.
-constexpr std::size_t kLeastPoints = 200;  ///< Fewer determine no pose.
-
-Eigen::Affine3f affine(const Pose3& pose) {
-  return (Eigen::Translation3d(pose.position) * pose.orientation).cast<float>();
+/// The pose without its parts in directions of which the cloud says nothing, as along a smooth corridor:
+/// there the guess is better than any of the poses that were tried.
+Pose3 determined(const Alignment& found) {
+  Pose3 pose = found.pose;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<std::size_t>(axis);
+    const Eigen::Vector3d v = found.localizability.axes_t.col(axis);
+    if (found.localizability.t[n] == Observability::none) pose.position -= v.dot(pose.position) * v;
+  }
+  return pose;
 }
 
 }  // namespace
@@ -19,29 +26,28 @@ Eigen::Affine3f affine(const Pose3& pose) {
 Result<RecognisedPlace> recognise(std::span<const Keyframe> keyframes,
                                   std::span<const Eigen::Vector3f> points, const Pose3& guess,
                                   const RecogniseParams& params) {
-  // Relative to the guess, which may be far from the frame's origin.
-  const Pose3 T_guess_odom = guess.inverse();
-  PointCloud surfaces;
-  for (const Keyframe& keyframe : keyframes) {
-    const Pose3 T_guess_keyframe = T_guess_odom * keyframe.T_odom_base;
-    if (T_guess_keyframe.position.norm() > kNear) continue;
-    const Eigen::Affine3f T = affine(T_guess_keyframe);
-    for (const Eigen::Vector3f& p : keyframe.points) surfaces.push_back(T * p);
-  }
-  if (surfaces.size() < kLeastPoints || points.size() < kLeastPoints) return RecognisedPlace{};
+  const PointCloud surfaces = surfaces_near(keyframes, guess, kNearKeyframe, keyframes.size());
+  const std::size_t least = params.planar ? kMinPlanarPoints : kMinPlacePoints;
+  if (surfaces.size() < least) return RecognisedPlace{};
+  RecognisedPlace place;
+  place.match = PlaceMatch::cannot_tell;
+  if (points.size() < least) return place;
 
   const VoxelPlanes target = align_target(surfaces, params.noise);
-  const Alignment found = align(
-      target, points, Pose3{},
-      {.range_noise = params.noise, .search_distance = params.max_shift, .search_angle = params.max_turn});
-  const double turn = Eigen::AngleAxisd(found.pose.orientation).angle();
-  const double shift = found.pose.position.norm();
+  const Alignment found = align(target, surfaces_of(points, params.planar), Pose3{},
+                                {.range_noise = params.noise,
+                                 .search_distance = params.max_shift,
+                                 .search_angle = params.max_turn,
+                                 .keeps_undetermined = true});
+  const Pose3 pose = determined(found);
+  const double turn = Eigen::AngleAxisd(pose.orientation).angle();
+  const double shift = pose.position.norm();
   char text[160];
   const bool confirms = shift < 0.1 && turn < 0.035;
-  const double least = confirms ? params.confirming_overlap : params.least_overlap;
-  if (found.overlap < least) {
+  const double expected = confirms ? params.confirming_overlap : params.least_overlap;
+  if (found.overlap < expected) {
     std::snprintf(text, sizeof text, "%.0f %% of what the lidar sees was there before, %.0f %% are expected",
-                  100 * found.overlap, 100 * least);
+                  100 * found.overlap, 100 * expected);
     return Error{Reason::not_localised_here, text};
   }
   if (shift > params.max_shift || turn > params.max_turn) {
@@ -49,13 +55,9 @@ Result<RecognisedPlace> recognise(std::span<const Keyframe> keyframes,
                   shift, turn * 180.0 / M_PI);
     return Error{Reason::not_localised_here, text};
   }
-  RecognisedPlace place;
   place.overlap = found.overlap;
-  place.compared = true;
-  const Pose3 corrected = guess * found.pose;
-  const Eigen::Quaterniond about_z(
-      Eigen::AngleAxisd(wrap_angle(corrected.yaw() - guess.yaw()), Eigen::Vector3d::UnitZ()));
-  place.correction = Pose3{corrected.position - about_z * guess.position, about_z};
+  place.match = PlaceMatch::found;
+  place.correction = level_correction(guess, pose);
   return place;
 }
 

@@ -16,18 +16,31 @@ struct RecogniseParams {
   /// agree.
   double confirming_overlap{0.5};
   double noise{0.02};  ///< Standard deviation of a range, m.
+  bool planar{false};  ///< The scan is of one horizontal ring, see kPlanarHeight.
 };
 
-/// A place that was recognised.
+/// What a comparison with keyframes could tell.
+enum class PlaceMatch {
+  nothing_stored,  ///< No keyframe near the guess shows enough; so there is nothing to compare with.
+  cannot_tell,     ///< The scan shows too little; another one may show more.
+  found,           ///< The scan lies on the keyframes' surfaces.
+};
+
+/// A place that was compared with keyframes.
 struct RecognisedPlace {
   /// From where the robot believed that it is to where it is, odometry frame: a shift and a turn about the
   /// vertical axis.
-  Pose3 correction{};
+  Pose3 correction{};  ///< The identity unless `match` is `found`.
   double overlap{};
-  /// Whether the scan is on the keyframes' surfaces; false: too few of them are near to compare with, and
-  /// `correction` is the identity.
-  bool compared{};
+  PlaceMatch match{PlaceMatch::nothing_stored};
 };
+
+/// Keyframes within this distance show the same surfaces, m.
+inline constexpr double kNearKeyframe = 25.0;
+
+/// A scan with fewer points determines no pose. With 16 rings and more that is less than 1 % of a sweep. Of a
+/// single ring each point stands for a piece of wall, and 60 are a sixth of a turn with one ray a degree.
+inline constexpr std::size_t kMinPlacePoints = 200, kMinPlanarPoints = 60;
 
 /// Compares a scan with keyframes of the same odometry frame.
 ///

@@ -17,6 +17,7 @@ struct Scan {
   /// PoseCorrection.
   Pose3 located{};
   std::uint32_t jumps{};  ///< How often `located` jumped before.
+  bool planar{false};     ///< See perception::Scan::planar.
 };
 
 /// The input of one planning cycle.

@@ -137,11 +137,11 @@ bool Scans::is_ahead(const perception::Sweep& sweep) const {
   return odometry_ && !odometry_->covers(end) && history_.newest() - end < kImuWait;
 }
 
-bool Scans::advance_odometry(const perception::Sweep& sweep) {
+bool Scans::advance_odometry(const perception::Sweep& sweep, const std::string& frame) {
   if (instance_ == 0) return false;
   if (!odometry_) {
     auto params = perception::LidarOdometryParams::of(platform_);
-    params.planar = sweep.planar;
+    params.planar = input_.is_planar(sweep, 0, frame);
     odometry_.emplace(params);
   }
   return odometry_->advance(perception::ScanInput::end_of(sweep));
@@ -181,7 +181,8 @@ void Scans::report_clock_steps() {
 void Scans::pass_on(std::size_t lidar) {
   const Waiting waiting = *std::exchange(waiting_[lidar], std::nullopt);
   // One clock for all, as without it nothing can be deskewed.
-  const bool located = lidar == 0 && waiting.sweep.stamp != 0 && advance_odometry(waiting.sweep);
+  const bool located =
+      lidar == 0 && waiting.sweep.stamp != 0 && advance_odometry(waiting.sweep, waiting.frame);
   report_clock_steps();
   auto scan = input_.add(waiting.sweep, lidar, waiting.frame, [&](std::uint64_t stamp) {
     return located ? odometry_->at(stamp) : history_.at(stamp);
@@ -198,7 +199,7 @@ void Scans::pass_on(std::size_t lidar) {
   const auto attitude = report && report->health != Localisation::lost ? std::nullopt : complete.attitude;
   call(output_,
        {std::make_shared<PointCloud>(std::move(complete.points)), complete.stamp, attitude, waiting.received,
-        report},
+        report, complete.planar},
        {.deadline = kScanDeadline}, [](const Result<void>&) {});
 }
 

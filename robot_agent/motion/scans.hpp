@@ -40,6 +40,7 @@ struct LidarScan {
   Time received{};  ///< When the sample arrived, by our clock.
   /// With `perception: odometry` and higher.
   std::optional<OdometryReport> odometry{};
+  bool planar{false};  ///< See perception::Scan::planar.
 };
 /// Takes scans; offered by the component that uses them.
 using ScanService = Service<LidarScan, void>;
@@ -79,7 +80,7 @@ class Scans : public Component {
   bool is_ahead(const perception::Sweep& sweep) const;
   void pass_on(std::size_t lidar);
   /// Moves the odometry to the end of a sweep of the first lidar; makes it when it is the first sweep.
-  bool advance_odometry(const perception::Sweep& sweep);
+  bool advance_odometry(const perception::Sweep& sweep, const std::string& frame);
   /// Where the scan was taken. With a clock of its own, the driver's newest pose stands for that of the
   /// scan's time, and the report is `weak` at best.
   std::optional<OdometryReport> locate(const perception::Scan& scan);

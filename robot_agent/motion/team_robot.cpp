@@ -34,6 +34,7 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   rest->body = scan->body;
   rest->located = scan->located;
   rest->jumps = scan->jumps;
+  rest->planar = scan->planar;
   rest->points.reserve(scan->points.size());
   for (const Eigen::Vector3f& point : scan->points) {
     const Eigen::Vector2d place = point.head<2>().cast<double>();

@@ -11,7 +11,7 @@
 namespace adit::agent {
 namespace {
 
-constexpr store::StateFormat kFormat{{'K', 'E', 'Y', 'F'}, 1, 64 * 1024};
+constexpr store::StateFormat kFormat{{'K', 'E', 'Y', 'F'}, perception::Keyframe::kVersion, 64 * 1024};
 
 std::string file_of(std::size_t slot) {
   char name[24];
@@ -45,8 +45,7 @@ std::optional<perception::Keyframe> KeyframeStore::read(std::size_t slot, const 
     case store::LoadStatus::nothing:
       return std::nullopt;
     case store::LoadStatus::newer:
-    case store::LoadStatus::older:
-      ++other_version_;
+      ++newer_;
       left_alone_.insert(slot);
       return std::nullopt;
     case store::LoadStatus::unreadable:
@@ -54,7 +53,9 @@ std::optional<perception::Keyframe> KeyframeStore::read(std::size_t slot, const 
       left_alone_.insert(slot);
       return std::nullopt;
     case store::LoadStatus::good:
-      if (auto keyframe = perception::decode_keyframe(state.payload)) return std::move(*keyframe);
+    case store::LoadStatus::older:
+      if (auto keyframe = perception::decode_keyframe(state.payload, state.version))
+        return std::move(*keyframe);
       [[fallthrough]];
     case store::LoadStatus::torn:
     case store::LoadStatus::corrupt:
@@ -62,7 +63,7 @@ std::optional<perception::Keyframe> KeyframeStore::read(std::size_t slot, const 
       break;
   }
   ++damaged_;
-  const bool intact = state.found == store::LoadStatus::good;
+  const bool intact = state.found == store::LoadStatus::good || state.found == store::LoadStatus::older;
   if (store::set_aside(*disk_, file_of(slot), intact ? "corrupt" : store::name(state.found)).empty())
     left_alone_.insert(slot);
   return std::nullopt;
@@ -74,7 +75,7 @@ std::string KeyframeStore::text() const {
     if (count > 0) out += (out.empty() ? "" : ", ") + std::to_string(count) + " " + what;
   };
   add(damaged_, "damaged");
-  add(other_version_, "of another version");
+  add(newer_, "of a newer version");
   add(unreadable_, "unreadable");
   return out.empty() ? out : "files of what its lidar saw before the restart: " + out + "; none was deleted";
 }

@@ -26,11 +26,11 @@ class KeyframeStore {
   KeyframeStore(std::shared_ptr<store::Disk> disk, Executor& home, std::shared_ptr<Executor> writer);
 
   /// Reads the files, and counts those that cannot be used. No file is deleted (rule 9): damaged ones are set
-  /// aside (core/store/preserve.hpp); those of another version, and those that the disk refuses to read now,
+  /// aside (core/store/preserve.hpp); those of a newer version, and those that the disk refuses to read now,
   /// stay, and their slots are not written by this process.
   void load();
   /// Files that could not be used.
-  std::size_t lost() const { return damaged_ + other_version_ + unreadable_; }
+  std::size_t lost() const { return damaged_ + newer_ + unreadable_; }
   /// The same in words, by what is wrong with them; empty: none.
   std::string text() const;
   /// Whether the robot moved by kSpacing since the last keyframe, so that one is to be made here.
@@ -51,9 +51,9 @@ class KeyframeStore {
   Executor& home_;
   std::shared_ptr<Executor> writer_;
   std::vector<std::optional<perception::Keyframe>> slots_;
-  std::size_t damaged_{}, other_version_{}, unreadable_{};  ///< Files.
-  std::set<std::size_t> left_alone_{};                      ///< Slots that are not written.
-  std::size_t next_{};                                      ///< Slot of the next keyframe.
+  std::size_t damaged_{}, newer_{}, unreadable_{};  ///< Files.
+  std::set<std::size_t> left_alone_{};              ///< Slots that are not written.
+  std::size_t next_{};                              ///< Slot of the next keyframe.
   std::optional<Eigen::Vector3d> last_{};
   std::uint32_t last_epoch_{};
   std::uint64_t generation_{};  ///< Of the last keyframe written.

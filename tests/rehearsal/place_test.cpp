@@ -21,6 +21,13 @@ std::string killed(std::uint64_t seed, double at, const std::string& more) {
          std::to_string(at) + ", crash: r1}\n" + more;
 }
 
+/// The same with a lidar of one ring.
+std::string killed_planar(std::uint64_t seed, double at, const std::string& more) {
+  std::string text = killed(seed, at, more);
+  const std::string full = "lidar: full";
+  return text.replace(text.find(full), full.size(), "lidar: planar");
+}
+
 std::uint64_t restart_seeds() {
   const char* wanted = std::getenv("ADIT_RESTART_SEEDS");
   return wanted ? std::strtoull(wanted, nullptr, 10) : 1;
@@ -37,6 +44,25 @@ TEST(PlaceAfterARestart, IsTheSameAndTheRobotGoesOn) {
     EXPECT_EQ(report.complaints(), std::vector<std::string>{})
         << "seed " << seed << ", killed at " << at << " s";
   }
+}
+
+TEST(PlaceAfterARestart, IsTheSameForALidarOfOneRing) {
+  for (std::uint64_t seed = 1; seed <= restart_seeds(); ++seed) {
+    const RunReport report =
+        run_text(killed_planar(seed, 5.0,
+                               "expect:\n  - {always: pose_within, m: 0.3}\n  - {always: no_collision}\n"
+                               "  - {by: 34, robot: r1, near: [12, 2, 0.6]}\n"),
+                 "planar.yaml");
+    EXPECT_EQ(report.complaints(), std::vector<std::string>{}) << "seed " << seed;
+  }
+}
+
+TEST(PlaceAfterARestart, IsUnknownWhenTheOdometryBeganAgainAsWellForALidarOfOneRing) {
+  const RunReport report = run_text(killed_planar(1, 8.0,
+                                                  "  - {at: 8.2, odometry_reset: r1}\n"
+                                                  "expect:\n  - {at: 34, robot: r1, mode: hold}\n"),
+                                    "planar.yaml");
+  EXPECT_EQ(report.complaints(), std::vector<std::string>{});
 }
 
 TEST(PlaceAfterARestart, IsCorrectedWhenTheOdometryBeganAgainNearby) {
