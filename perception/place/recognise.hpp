@@ -32,6 +32,7 @@ struct RecognisedPlace {
   /// vertical axis.
   Pose3 correction{};  ///< The identity unless `match` is `found`.
   double overlap{};
+  double runner_up{};  ///< Overlap of the best place elsewhere, by relocalise().
   PlaceMatch match{PlaceMatch::nothing_stored};
 };
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <numbers>
+#include <span>
+
+#include "perception/place/recognise.hpp"
+
+namespace adit::perception {
+
+/// What a lost robot knows of the error of its pose.
+struct RelocaliseParams {
+  double moved{0.5};                  ///< What the body can have done unseen, beyond the guess, m, [0, inf).
+  double max_turn{std::numbers::pi};  ///< The same for its heading, rad, [0, pi].
+  double noise{0.02};                 ///< Standard deviation of a range, m.
+  bool planar{false};                 ///< The scan is of one horizontal ring, see kPlanarHeight.
+};
+
+/// Poses farther from the guess are not searched, m.
+inline constexpr double kMaxRelocaliseRadius = 3.0;
+
+/// Finds the pose of a robot that is lost among what it saw before.
+///
+/// Within 3 sigma + `moved` around the guess, at most kMaxRelocaliseRadius, all poses of a grid are compared
+/// on a plan of the upright surfaces (exhaustive correlative scan matching, Olson 2009). The best ones that
+/// differ are laid onto the keyframes' planes by align(). The best of them counts only when the next best
+/// place is clearly worse: a robot between places that look alike stays lost. Pure and deterministic.
+///
+/// @param points  In base_link, m.
+/// @param guess   T_odom_base.
+/// @param sigma   Standard deviation of its horizontal position, m.
+/// Errors: not_localised_here, with why.
+Result<RecognisedPlace> relocalise(std::span<const Keyframe> keyframes,
+                                   std::span<const Eigen::Vector3f> points, const Pose3& guess, double sigma,
+                                   const RelocaliseParams& params = {});
+
+}  // namespace adit::perception
