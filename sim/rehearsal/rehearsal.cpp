@@ -390,7 +390,7 @@ SimulationParams make_simulation_params(const Scenario& scenario, std::uint64_t 
   if (scenario.lidar == LidarKind::planar) out.lidar = LidarParams::planar();
   out.realistic = scenario.lidar == LidarKind::full;
   out.noise = scenario.noise;
-  out.dust = scenario.dust;
+  out.dust = scenario.world.dust;
   out.dropouts = scenario.dropouts;
   out.odometry = (out.realistic ? OdometryParams::realistic() : OdometryParams{}).scaled(scenario.noise);
   if (!out.realistic) out.lidar.range_noise *= scenario.noise;  // A sweep scales its noise itself.

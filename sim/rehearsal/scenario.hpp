@@ -29,6 +29,7 @@ struct WorldSpec {
   std::vector<BoxCorners> boxes{};
   double floor{0.0};
   double ceiling{3.0};
+  double dust{0.0};  ///< LidarErrors::dust, [0, 0.5].
 };
 
 enum class LidarKind { full, planar };
@@ -68,7 +69,7 @@ struct RandomScript {
 struct RandomFaults {
   int faults{};
   Duration from{}, to{};
-  std::vector<std::string> kinds{};  ///< Names of fault_kinds().
+  std::vector<std::string> kinds{};  ///< Of random_fault_kinds(); empty: all that the scenario can have.
   int finds{};                       ///< Findings beside the faults, each of one robot.
 };
 
@@ -179,7 +180,6 @@ struct Scenario {
   LidarKind lidar{LidarKind::full};
   PerceptionLevel perception{PerceptionLevel::off};  ///< Of robots that do not name their own.
   double noise{1.0};                 ///< Scale of the errors of odometry and sensors, [0, 10]; 0: the truth.
-  double dust{0.0};                  ///< LidarErrors::dust, [0, 0.5].
   std::optional<double> dropouts{};  ///< LidarErrors::dropouts, unless its default, [0, 1].
   std::vector<RobotSpec> robots{};
   std::vector<StationSpec> stations{};

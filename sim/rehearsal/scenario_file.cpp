@@ -40,6 +40,7 @@ WorldSpec read_world(const Node& world, const std::string& file) {
                     world.has("generate");
   if (world.is_mapping() && kinds != 1)
     world.fail(Reason::missing_key, "expected one of map, boxes, floorplan and generate");
+  out.dust = world.number("dust", config::within(0.0, 0.5), 0.0);
   if (world.has("map")) out.map = find_map(world, "map", file);
   if (world.has("floorplan")) {
     out.floor_plan = find_map(world, "floorplan", file);
@@ -152,12 +153,18 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
     const Node odometry = root.child("odometry");
     out.noise = odometry.number("noise", config::within(0.0, 10.0), 1.0);
   }
-  out.dust = root.number("dust", config::within(0.0, 0.5), 0.0);
+  const bool twice = root.has("dust") && root.child("world").has("dust");
+  if (twice) root.child("dust").fail(Reason::bad_argument, "expected dust in one place: world has it, too");
+  if (root.has("dust")) out.world.dust = root.number("dust", config::within(0.0, 0.5));
   if (root.has("dropouts")) out.dropouts = root.number("dropouts", config::within(0.0, 1.0));
-  for (const char* key : {"dust", "dropouts"})
-    if (root.has(key) && out.lidar != LidarKind::full)
-      root.child(key).fail(Reason::bad_argument,
+  const auto need_beams = [&](const Node& node, const char* key) {
+    if (node.has(key) && out.lidar != LidarKind::full)
+      node.child(key).fail(Reason::bad_argument,
                            "expected lidar: full, whose beams are simulated one by one");
+  };
+  need_beams(root, "dust");
+  need_beams(root, "dropouts");
+  need_beams(root.child("world"), "dust");
   read_machines(root, out);
   read_people(root, out);
   out.script = read_script(root, out);

@@ -217,6 +217,16 @@ TEST(Scenario, FaultsOfSweepsSayWhatIsExpected) {
   }
 }
 
+TEST(Scenario, DustIsOfTheWorldAndNeedsSingleBeams) {
+  const auto dusty = swept(with("ceiling: 3}", "ceiling: 3, dust: 0.05}"));
+  EXPECT_EQ(parse_scenario(dusty, "b.yaml")->world.dust, 0.05);
+  EXPECT_EQ(parse_scenario(swept(with("duration: 120", "dust: 0.2\nduration: 120")), "b.yaml")->world.dust,
+            0.2);
+  const auto twice = parse_scenario(dusty + "dust: 0.1\n", "b.yaml");
+  ASSERT_FALSE(twice.ok());
+  EXPECT_NE(twice.error().text.find("expected dust in one place"), std::string::npos) << twice.error().text;
+}
+
 struct Bad {
   const char* name;
   const char* what;
@@ -359,6 +369,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"map_too_right", "{always: no_collision}", "{by: 9, by_operator: op1, map_wrong_at_most: 2}", 23,
             "[0, 1]"},
         Bad{"pose_without_limit", "{always: no_collision}", "{always: pose_within}", 23, "m"},
+        Bad{"dust_before_a_planar_lidar", "ceiling: 3}", "ceiling: 3, dust: 0.1}", 1, "lidar: full"},
+        Bad{"world_of_dust", "ceiling: 3}", "ceiling: 3, dust: 0.6}", 1, "[0, 0.5]"},
         Bad{"dust_of_half", "duration: 120", "dust: 0.6\nduration: 120", 2, "[0, 0.5]"},
         Bad{"always_what", "no_collision", "happy", 23, "no_collision"},
         Bad{"no_yaml", "robots:", "robots: [", 6, ""}),
