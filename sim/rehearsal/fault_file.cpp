@@ -208,14 +208,14 @@ RandomFaults read_random_faults(const Node& node, const Scenario& scenario) {
   out.to = read_time(node, "to", scenario);
   if (out.to < out.from) node.fail(Reason::out_of_range, "expected from before to");
   out.finds = static_cast<int>(node.integer("finds", 0, 1000, 0));
-  out.kinds = node.texts("kinds", random_fault_kinds());
-  const auto& known = random_fault_kinds();
+  if (node.has("kinds")) out.kinds = node.texts("kinds");
+  const auto known = random_fault_kinds(scenario);
   std::string all;
   for (const std::string& kind : known) all += (all.empty() ? "" : ", ") + kind;
   for (const std::string& kind : out.kinds)
     if (std::find(known.begin(), known.end(), kind) == known.end())
       node.child("kinds").fail(Reason::bad_argument, "expected kinds of faults (" + all + "), not " + kind);
-  if (out.kinds.empty()) node.fail(Reason::bad_argument, "expected at least one kind");
+  if (node.has("kinds") && out.kinds.empty()) node.fail(Reason::bad_argument, "expected at least one kind");
   return out;
 }
 

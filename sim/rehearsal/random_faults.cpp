@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 
 namespace adit::sim {
 namespace {
@@ -25,16 +27,65 @@ const T& pick(const std::vector<T>& from, Random& random) {
   return from[random.below(from.size())];
 }
 
+bool perceives(const RobotSpec& robot) { return robot.settings.perception != PerceptionLevel::off; }
+bool perceives(const Scenario& scenario) {
+  return std::any_of(scenario.robots.begin(), scenario.robots.end(),
+                     [](const RobotSpec& robot) { return perceives(robot); });
+}
+
+const std::set<std::string>& driver_kinds() {
+  static const std::set<std::string> kinds{"slip",     "turn_slip",      "driver_clock",
+                                           "no_stamp", "driver_restart", "lose_columns"};
+  return kinds;
+}
+
+/// The time in which a robot's lidar or odometry is of no use.
+struct Impairment {
+  std::string robot;
+  Sensor sensor;
+  Duration from, to;
+};
+
+std::optional<Impairment> impairment(const Fault& fault) {
+  constexpr Duration kRecovery{2s};  // After which a sensor that was wrong is trusted again.
+  const auto of = [&](const std::string& robot, Sensor sensor, Duration duration) {
+    return sensor == Sensor::imu
+               ? std::nullopt
+               : std::optional(Impairment{robot, sensor, fault.at, fault.at + duration + kRecovery});
+  };
+  if (const auto* f = std::get_if<SensorSilent>(&fault.what)) return of(f->robot, f->sensor, f->duration);
+  if (const auto* f = std::get_if<DriverClock>(&fault.what)) return of(f->robot, f->sensor, f->duration);
+  if (const auto* f = std::get_if<NoStamp>(&fault.what)) return of(f->robot, f->sensor, f->duration);
+  if (const auto* f = std::get_if<Slip>(&fault.what)) return of(f->robot, Sensor::odometry, f->duration);
+  if (const auto* f = std::get_if<TurnSlip>(&fault.what)) return of(f->robot, Sensor::odometry, f->duration);
+  if (const auto* f = std::get_if<DriverRestart>(&fault.what)) return of(f->robot, Sensor::odometry, 0s);
+  return std::nullopt;
+}
+
 /// Draws one fault after the other.
 class Draw {
  public:
   Draw(const RandomFaults& spec, const Scenario& scenario, Random& random)
-      : spec_(spec), scenario_(scenario), random_(random) {}
+      : spec_(spec),
+        scenario_(scenario),
+        random_(random),
+        kinds_(spec.kinds.empty() ? random_fault_kinds(scenario) : spec.kinds),
+        perceives_(perceives(scenario)) {}
 
-  Fault next() {
+  /// Nothing when every robot is short of a sensor at all times already.
+  std::optional<Fault> next() {
+    if (!perceives_) return draw();
+    Fault out = draw();
+    for (int more = 0; blinds(out) && more < kMostDraws; ++more) out = draw();
+    if (blinds(out)) return std::nullopt;
+    drawn_.push_back(out);
+    return out;
+  }
+
+  Fault draw() {
     Fault out;
     out.at = from_seconds(between(seconds(spec_.from), seconds(spec_.to)));
-    what(pick(spec_.kinds, random_), out);
+    what(pick(kinds_, random_), out);
     return out;
   }
 
@@ -109,24 +160,117 @@ class Draw {
       out.what = DiskFull{robot(), length(1.0, 10.0)};
     } else if (kind == "forge") {
       out.what = Forge{station(), robot(), length(1.0, 5.0)};
+    } else if (driver_kinds().contains(kind)) {
+      of_driver(kind, out);
     } else {
       out.what = StuckStick{station(), robot(), length(0.5, 5.0)};
     }
   }
 
+  // One of the robots whose faults of drivers are drawn; `drives`: that flies not.
+  const std::string& perceiving(bool drives = false) {
+    std::vector<const RobotSpec*> those;
+    for (const RobotSpec& robot : scenario_.robots)
+      if (perceives(robot) && !(drives && robot.settings.platform.flies())) those.push_back(&robot);
+    return those.empty() ? robot() : pick(those, random_)->id;
+  }
+  Sensor sensor() {
+    const std::size_t all = scenario_.lidar == LidarKind::full ? 3 : 2;  // A planar robot has no imu.
+    return static_cast<Sensor>(random_.below(all));
+  }
+  double either_sign(double low, double high) {
+    const double amount = between(low, high);
+    return random_.chance(0.5) ? amount : -amount;
+  }
+
+  // A little, as a clock that is set; some seconds; a time zone; a computer without a clock that learns the
+  // time.
+  double clock_jump() {
+    switch (random_.below(4)) {
+      case 0:
+        return either_sign(0.05, 1.0);
+      case 1:
+        return either_sign(1.0, 60.0);
+      case 2:
+        return random_.chance(0.5) ? 3600.0 : -3600.0;
+      default:
+        return 1.6e9;
+    }
+  }
+
+  void of_driver(const std::string& kind, Fault& out) {
+    if (kind == "slip") {
+      const std::string& robot = perceiving(true);
+      const double vx = either_sign(0.0, 2.0), wz = random_.chance(0.5) ? 0.0 : either_sign(0.0, 1.0);
+      out.what = Slip{robot, vx, wz, length(0.5, 10.0)};
+    } else if (kind == "turn_slip") {
+      const std::string& robot = perceiving(true);
+      const double share = between(0.1, 0.6);
+      out.what = TurnSlip{robot, share, length(2.0, 15.0)};
+    } else if (kind == "driver_clock") {
+      const std::string& robot = perceiving();
+      const Duration jump = from_seconds(clock_jump());
+      const Sensor of = sensor();
+      out.what = DriverClock{robot, jump, of, length(1.0, 10.0)};
+    } else if (kind == "no_stamp") {
+      const std::string& robot = perceiving();
+      const Sensor of = sensor();
+      out.what = NoStamp{robot, of, length(1.0, 10.0)};
+    } else if (kind == "driver_restart") {
+      const std::string& robot = perceiving();
+      Pose2 origin;
+      if (random_.chance(0.6)) {
+        origin.x = between(-20.0, 20.0);
+        origin.y = between(-20.0, 20.0);
+        origin.yaw = between(-3.1, 3.1);
+      }
+      out.what = DriverRestart{robot, origin};
+    } else {
+      const std::string& robot = perceiving();
+      const double share = between(0.005, 0.2);
+      const auto time = static_cast<LostTime>(random_.below(lost_time_words().size()));
+      out.what = LoseColumns{robot, {share, time}, length(1.0, 10.0)};
+    }
+  }
+
+  // Whether a robot would have neither its lidar nor its odometry without a fault.
+  bool blinds(const Fault& fault) const {
+    const auto own = impairment(fault);
+    if (!own) return false;
+    return std::any_of(drawn_.begin(), drawn_.end(), [&](const Fault& other) {
+      const auto its = impairment(other);
+      return its && its->robot == own->robot && its->sensor != own->sensor && its->from < own->to &&
+             own->from < its->to;
+    });
+  }
+
+  static constexpr int kMostDraws = 20;
   const RandomFaults& spec_;
   const Scenario& scenario_;
   Random& random_;
+  std::vector<std::string> kinds_;
+  bool perceives_;
+  std::vector<Fault> drawn_{};
 };
 
 }  // namespace
 
-const std::vector<std::string>& random_fault_kinds() {
+std::vector<std::string> random_fault_kinds(const Scenario& scenario) {
   static const std::vector<std::string> kinds{"crash",      "crash_component", "hang",        "cut",
                                               "degrade",    "partition",       "reorder",     "duplicate",
                                               "clock_jump", "sensor_silent",   "stuck_drive", "disk_full",
                                               "forge",      "stuck_stick"};
-  return kinds;
+  std::vector<std::string> all = kinds;
+  if (!perceives(scenario)) return all;
+  const bool drives = std::any_of(scenario.robots.begin(), scenario.robots.end(), [](const RobotSpec& robot) {
+    return perceives(robot) && !robot.settings.platform.flies();
+  });
+  for (const std::string& kind : driver_kinds()) {
+    const bool of_wheels = kind == "slip" || kind == "turn_slip";
+    const bool possible = of_wheels ? drives : kind != "lose_columns" || scenario.lidar == LidarKind::full;
+    if (possible) all.push_back(kind);
+  }
+  return all;
 }
 
 const std::vector<std::string>& component_names() {
@@ -138,7 +282,8 @@ std::vector<Fault> draw_faults(const RandomFaults& spec, const Scenario& scenari
   std::vector<Fault> out;
   Random copy = random, of_finds = copy.fork(9);  // how many there are changes no fault
   Draw draw(spec, scenario, random), finds(spec, scenario, of_finds);
-  for (int i = 0; i < spec.faults; ++i) out.push_back(draw.next());
+  for (int i = 0; i < spec.faults; ++i)
+    if (auto fault = draw.next()) out.push_back(std::move(*fault));
   for (int i = 0; i < spec.finds; ++i) out.push_back(finds.find());
   std::stable_sort(out.begin(), out.end(), [](const Fault& a, const Fault& b) { return a.at < b.at; });
   return out;

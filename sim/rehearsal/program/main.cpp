@@ -118,7 +118,7 @@ void set_perception(Scenario& scenario, const std::string& level) {
 // Chaos needs something to draw: what a scenario does not say is as in team_chaos.yaml.
 void add_chaos(Scenario& scenario) {
   const Duration from = scenario.duration / 20, to = scenario.duration * 19 / 20;
-  if (!scenario.random_faults) scenario.random_faults = RandomFaults{8, from, to, random_fault_kinds()};
+  if (!scenario.random_faults) scenario.random_faults = RandomFaults{8, from, to};
   if (scenario.random || !scenario.script.empty()) return;
   RandomScript script{70, from, to, {}, {}, all_random_verbs(), {4.0, 4.0}};
   for (const StationSpec& station : scenario.stations) script.by.push_back(station.id);
