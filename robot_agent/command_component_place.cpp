@@ -14,6 +14,13 @@ constexpr Duration kKeyframe = 5ms;       // The same.
 constexpr const char* kUnreadable = "what it saw before cannot be read from its disk";
 constexpr Duration kLookAhead = 1s;  // Between two updates of what stations should get first.
 
+/// Of a state of an earlier version: 1 % of the distance from the start, the usual drift of wheels, at least.
+double sigma_of(const StoredFrames& stored) {
+  constexpr double kUsualDrift = 0.01;
+  const double distance = stored.newest ? stored.newest->T_odom_base.position.norm() : 0.0;
+  return stored.pose_sigma.value_or(kUsualDrift * distance);
+}
+
 }  // namespace
 
 void Agent::CommandComponent::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp,
@@ -51,6 +58,7 @@ Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
   if (!frames_.initialised())
     return {Reason::no_localisation, "pose: the driver has not sent any odometry yet"};
   frames_.set_pose(pose);
+  correction_.reset_sigma();
   context_.place.confirm();
   keep();  // As in correct_map().
   return {};
@@ -59,7 +67,7 @@ Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
 void Agent::CommandComponent::restore_place(const StoredFrames& stored) {
   frames_.restore(stored);
   if (!localises()) return;
-  correction_.restore(stored.T_odom_driver);
+  correction_.restore(stored.T_odom_driver, sigma_of(stored));
   if (!stored.recognised)
     context_.place.refuse();
   else if (context_.place.pending() || (context_.instances == 1 && stored.newest))
@@ -200,7 +208,10 @@ void Agent::CommandComponent::send_pieces() {
 
 StoredFrames Agent::CommandComponent::stored_place() const {
   StoredFrames place = frames_.stored();
-  if (localises()) place.T_odom_driver = correction_.T_odom_driver();
+  if (localises()) {
+    place.T_odom_driver = correction_.T_odom_driver();
+    place.pose_sigma = correction_.sigma();
+  }
   place.recognised = !context_.place.refused();
   return place;
 }

@@ -72,17 +72,21 @@ void PoseCorrection::take(const OdometryReport& report, Time now) {
     T_odom_local_ = Pose3{here.position - turn * local.position, turn};
     if (instance_ != 0) sigma_before_ = std::hypot(sigma_, kAlone * alone_);
     instance_ = report.instance;
-    reported_ = 0;
+    reported_from_ = 0.0;
+    reported_at_ = 0;
     ++jumps_;
   }
   const Pose3 before = wanted_;
   wanted_ = *T_odom_local_ * report.T_local_driver;
-  sigma_ = std::hypot(sigma_before_, report.sigma);
+  reported_ = report.sigma;
+  // It falls where the lidar sees again what it had lost; what grows from there on counts.
+  reported_from_ = std::min(reported_from_, reported_);
+  sigma_ = std::sqrt(sigma_before_ * sigma_before_ + reported_ * reported_ - reported_from_ * reported_from_);
   slip_ = 0.0;
-  if (reported_ != 0 && report.stamp > reported_)
+  if (reported_at_ != 0 && report.stamp > reported_at_)
     slip_ = ((before * *T_driver_base_).position - (wanted_ * *T_driver_base_).position).norm() /
-            std::max(kUsualStep, seconds_between(reported_, report.stamp));
-  reported_ = report.stamp;
+            std::max(kUsualStep, seconds_between(reported_at_, report.stamp));
+  reported_at_ = report.stamp;
   alone_ = 0.0;
 }
 
@@ -115,7 +119,7 @@ std::optional<Pose3> PoseCorrection::located(const OdometryReport& report) const
 
 double PoseCorrection::sigma() const {
   const double since =
-      reported_ != 0 && applied_ > reported_ ? std::min(kMaxStep, seconds_between(reported_, applied_)) : 0.0;
+      reported_at_ != 0 && applied_ > reported_at_ ? std::min(kMaxStep, seconds_between(reported_at_, applied_)) : 0.0;
   return std::hypot(sigma_, kAlone * alone_) + pending_ + slip_ * since;
 }
 

@@ -39,8 +39,16 @@ class PoseCorrection {
   explicit PoseCorrection(const Platform& platform)
       : max_speed_(kFaster * platform.max_speed), max_turn_(kFaster * platform.max_turn) {}
 
-  /// Continues with a stored correction after a restart.
-  void restore(const Pose3& T_odom_driver) { T_odom_driver_ = wanted_ = T_odom_driver; }
+  /// Continues with a stored correction after a restart. `sigma`: of the pose before it, m.
+  void restore(const Pose3& T_odom_driver, double sigma) {
+    T_odom_driver_ = wanted_ = T_odom_driver;
+    sigma_before_ = sigma_ = sigma;
+  }
+  /// An operator said where the robot is: sigma counts from here on.
+  void reset_sigma() {
+    sigma_before_ = sigma_ = 0.0;
+    reported_from_ = reported_;
+  }
   /// The driver's frame began again; reports about scans before `stamp` are of the previous one.
   void begin_frame(std::uint64_t stamp);
   /// Moves the pose by `correction` in odom, as it was found by other means; level.
@@ -65,11 +73,12 @@ class PoseCorrection {
   Pose3 T_odom_driver_{}, wanted_{};
   std::optional<Pose3> T_odom_local_{};  ///< Nothing: the next report sets it.
   std::uint32_t instance_{}, jumps_{};
-  std::uint64_t frame_began_{}, applied_{}, reported_{};  ///< Stamps.
+  std::uint64_t frame_began_{}, applied_{}, reported_at_{};  ///< Stamps.
   std::optional<Pose3> T_driver_base_{}, T_odom_base_{};  ///< The newest ones.
   std::optional<Time> heard_{};
   Localisation health_{Localisation::starting};
-  double sigma_{}, sigma_before_{};  ///< In m; the latter is of earlier instances.
+  double sigma_{}, sigma_before_{};      ///< In m; the latter is of earlier instances.
+  double reported_{}, reported_from_{};  ///< The present instance's, now and where sigma counts from, m.
   double pending_{};                 ///< From apply() to where it should be, m.
   double slip_{};                    ///< How fast the driver's odometry leaves the own one, m/s.
   double alone_{};                   ///< Way by the driver's odometry since the last report, m.

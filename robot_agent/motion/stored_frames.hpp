@@ -32,13 +32,16 @@ struct StoredFrames {
   Pose3 T_odom_driver{};
   /// False: after a restart the robot did not recognise its surroundings, and waits for its pose.
   bool recognised{true};
+  /// Standard deviation of the horizontal position since the start, m; unset: unknown.
+  std::optional<double> pose_sigma{};
+  double yaw_sigma{};  ///< Of the heading, rad; 0 as long as nothing measures it.
   bool same_frame(const StoredFrames& other) const {
     return T_map_odom == other.T_map_odom && height == other.height && odom_epoch == other.odom_epoch &&
            map_epoch == other.map_epoch && recognised == other.recognised;
   }
   bool operator==(const StoredFrames& other) const {
-    return same_frame(other) && newest == other.newest &&
-           T_odom_driver.position == other.T_odom_driver.position &&
+    return same_frame(other) && newest == other.newest && pose_sigma == other.pose_sigma &&
+           yaw_sigma == other.yaw_sigma && T_odom_driver.position == other.T_odom_driver.position &&
            T_odom_driver.orientation.coeffs() == other.T_odom_driver.orientation.coeffs();
   }
 };

@@ -74,6 +74,13 @@ bool read_place(Unpacker& in, Snapshot& s) {
   return s.place.has_value();
 }
 
+bool read_sigma(Unpacker& in, Snapshot& s) {
+  StoredFrames place = s.place.value_or(StoredFrames{});
+  if (!fields::read_sigma(in, place)) return false;
+  if (s.place) s.place = place;  // Of a place that was lost it says nothing.
+  return true;
+}
+
 bool read_area(Unpacker& in, Snapshot& s) {
   const nav::Area read = fields::area(in);
   if (!in.done()) return false;
@@ -137,6 +144,17 @@ const std::array kRows{
           if (s.place) add_one(add, *s.place);
         },
         read_place},
+    Row{{'S', 'I', 'G', 'M'},
+        1,
+        "accuracy of the place",
+        false,
+        [](const Snapshot& s, const auto& add) {
+          if (!s.place || !s.place->pose_sigma) return;
+          Packer out;
+          fields::put_sigma(out, *s.place);
+          add(out);
+        },
+        read_sigma},
     Row{{'M', 'O', 'D', 'E'},
         1,
         "state of a mode",

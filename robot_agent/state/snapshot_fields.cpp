@@ -40,6 +40,8 @@ std::optional<Binding::Stored> speaker(Unpacker& in) {
   return stored;
 }
 
+bool is_sigma(double value) { return std::isfinite(value) && value >= 0.0; }
+
 }  // namespace
 
 void put(Packer& out, const StoredAuthority& authority) {
@@ -175,6 +177,18 @@ StoredFrames place(Unpacker& in) {
   return stored;
 }
 
+void put_sigma(Packer& out, const StoredFrames& place) {
+  out.put(place.pose_sigma.value_or(0.0)).put(place.yaw_sigma);
+}
+
+bool read_sigma(Unpacker& in, StoredFrames& place) {
+  const double pose_sigma = in.number(), yaw_sigma = in.number();
+  if (!in.done() || !is_sigma(pose_sigma) || !is_sigma(yaw_sigma)) return false;
+  place.pose_sigma = pose_sigma;
+  place.yaw_sigma = yaw_sigma;
+  return true;
+}
+
 // An invalid place counts as missing odometry: no mode resumes by itself.
 StoredFrames sanitized(StoredFrames place) {
   const Pose2& frame = place.T_map_odom;
@@ -189,6 +203,9 @@ StoredFrames sanitized(StoredFrames place) {
     place.newest.reset();
   }
   if (place.newest && !is_pose(place.newest->T_odom_base)) place.newest.reset();
+  if (place.pose_sigma && (!is_sigma(*place.pose_sigma) || !is_sigma(place.yaw_sigma)))
+    place.pose_sigma.reset();
+  if (!place.pose_sigma) place.yaw_sigma = 0.0;
   return place;
 }
 

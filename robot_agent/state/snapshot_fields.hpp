@@ -12,6 +12,8 @@ void put(store::Packer& out, const StoredAuthority& authority);
 void put(store::Packer& out, const std::vector<Party>& stops);
 void put(store::Packer& out, const StoredBehaviour& behaviour);
 void put(store::Packer& out, const StoredFrames& place);
+/// The accuracy of a place, which has a section of its own: states of earlier versions have none.
+void put_sigma(store::Packer& out, const StoredFrames& place);
 void put(store::Packer& out, const nav::Area& area);
 void put(store::Packer& out, const StoredAnswers& from);
 
@@ -20,6 +22,8 @@ StoredAuthority authority(store::Unpacker& in);
 std::vector<Party> stops(store::Unpacker& in);
 StoredBehaviour behaviour(store::Unpacker& in);
 StoredFrames place(store::Unpacker& in);
+/// Reads it into `place`; false when it is none.
+bool read_sigma(store::Unpacker& in, StoredFrames& place);
 nav::Area area(store::Unpacker& in);
 StoredAnswers answers(store::Unpacker& in);
 

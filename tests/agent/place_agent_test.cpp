@@ -124,5 +124,21 @@ TEST_F(PlaceOfAnAgent, IsRefusedWhenTheLidarShowsTooLittleForTenSeconds) {
   EXPECT_EQ(op->behaviour.mode(), "hold");
 }
 
+TEST_F(PlaceOfAnAgent, IsNotKnownBetterAfterARestart) {
+  ASSERT_EQ(bench->ask(*op, CMD_GOTO, "", 8, 0), Reason::none);
+  bench->run(12s);
+  const double before = op->state.sigma();
+  ASSERT_GT(before, 0.0);
+  crash();
+  bench->start_agent();
+  bench->run(3s);
+  ASSERT_EQ(static_cast<Localisation>(op->state.localisation()), Localisation::ok);
+  EXPECT_GE(op->state.sigma(), before);
+  ASSERT_EQ(bench->ask(*op, CMD_MODE, "hold"), Reason::none);
+  ASSERT_EQ(bench->ask(*op, CMD_POSE, "", 8, 0), Reason::none);
+  bench->run(500ms);
+  EXPECT_LT(op->state.sigma(), 0.5 * before);
+}
+
 }  // namespace
 }  // namespace adit::agent

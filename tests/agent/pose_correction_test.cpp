@@ -208,6 +208,46 @@ TEST(PoseCorrection, AWayByTheDriverAloneIsLessCertain) {
   EXPECT_GT(correction.sigma(), 1.0);
 }
 
+/// Drives on by so many metres, with reports whose sigma grows by 0.5 % of the way from `sigma` on.
+void drive_on(PoseCorrection& correction, Drive& drive, double metres, std::uint32_t instance, double sigma) {
+  for (double way = 0; way < metres; way += 0.02) {
+    drive.step();
+    correction.apply(drive.driver(), drive.stamp);
+    OdometryReport report = drive.report(Pose3{}, instance);
+    report.sigma = sigma + 0.005 * way;
+    correction.take(report, kNow);
+  }
+}
+
+TEST(PoseCorrection, SigmaGoesOnAfterARestart) {
+  PoseCorrection before(wheeled());
+  Drive drive;
+  drive_on(before, drive, 200, 1, 0.02);
+  ASSERT_GT(before.sigma(), 1.0);
+  PoseCorrection after(wheeled());
+  after.restore(before.T_odom_driver(), before.sigma());
+  EXPECT_EQ(after.sigma(), before.sigma());
+  drive_on(after, drive, 1, 1, 0.02);
+  EXPECT_GT(after.sigma(), before.sigma());
+}
+
+TEST(PoseCorrection, SigmaCountsFromAnOperatorsPose) {
+  PoseCorrection correction(wheeled());
+  Drive drive;
+  drive_on(correction, drive, 200, 1, 0.02);
+  correction.reset_sigma();
+  EXPECT_EQ(correction.sigma(), 0.0);
+  drive_on(correction, drive, 1, 1, 1.02);
+  EXPECT_GT(correction.sigma(), 0.05);
+  EXPECT_LT(correction.sigma(), 0.15);
+  // The lidar sees again what it had lost, and then drifts as before.
+  drive_on(correction, drive, 0.02, 1, 0.05);
+  drive_on(correction, drive, 40, 1, 0.05);
+  EXPECT_NEAR(correction.sigma(), 0.25, 0.02);
+  drive_on(correction, drive, 0.02, 2, 0.02);  // Another instance.
+  EXPECT_NEAR(correction.sigma(), 0.25, 0.02);
+}
+
 TEST(PoseCorrection, SilenceIsNoHealth) {
   PoseCorrection correction(wheeled());
   Drive drive;

@@ -44,9 +44,9 @@ Snapshot full() {
   s.boot = 0x1122334455667788;
   s.battery = 2;
   s.place = StoredFrames{
-      {4, -3, 1.5}, 2,  OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)},
-      3.5,          41, Pose3::level({0.1, -0.2, 0.01}, 0),
-      false};
+      {4, -3, 1.5}, 2,   OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)},
+      3.5,          41,  Pose3::level({0.1, -0.2, 0.01}, 0),
+      false,        0.8, 0.01};
   StoredAnswers a;
   a.participant[3] = 4;
   a.station = "op1";
@@ -86,6 +86,19 @@ TEST(Snapshot, gives_back_what_was_put) {
   EXPECT_EQ(read_back(full()), full());
   EXPECT_EQ(read_back(largest()), largest());
   EXPECT_EQ(read_back(Snapshot{}), Snapshot{});
+}
+
+TEST(Snapshot, of_an_earlier_version_does_not_know_its_accuracy) {
+  Snapshot s = full();
+  auto sections = store::unpack_sections(encode(s)).good;
+  EXPECT_EQ(std::erase_if(sections, [](const auto& each) { return store::tag_text(each.tag) == "SIGM"; }),
+            1u);
+  const auto read = decode_snapshot(store::pack_sections(sections));
+  ASSERT_TRUE(read);
+  EXPECT_THAT(read->lost, IsEmpty());
+  s.place->pose_sigma.reset();
+  s.place->yaw_sigma = 0;
+  EXPECT_EQ(read->snapshot, s);
 }
 
 TEST(Snapshot, gives_back_what_the_modes_stored) {
