@@ -19,7 +19,7 @@ struct RecogniseParams {
   bool planar{false};  ///< The scan is of one horizontal ring, see kPlanarHeight.
 };
 
-/// What a comparison with keyframes could tell.
+/// Result of a comparison with keyframes.
 enum class PlaceMatch {
   nothing_stored,  ///< No keyframe near the guess shows enough; so there is nothing to compare with.
   cannot_tell,     ///< The scan shows too little; another one may show more.

@@ -22,7 +22,7 @@ class PlaceCheck {
     state_ = State::waiting;
     shows_too_little_since_.reset();
   }
-  /// The last comparison told nothing: another scan must be compared.
+  /// The last comparison had no result: another scan must be compared.
   void again() { state_ = State::waiting; }
   /// The last scan showed too little to compare it: another one must be. Returns false when that has been so
   /// for kPatience.
