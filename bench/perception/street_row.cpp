@@ -51,7 +51,7 @@ Result<NamedPath> run_street(const std::string& clouds) {
     if (!cloud) return cloud.error();
     const double begin = thread_cpu_ms();
     odometry.advance(1'000'000'000 + 100'000'000 * static_cast<std::uint64_t>(path.poses.size()));
-    path.poses.push_back(odometry.update(*cloud).pose);
+    path.poses.push_back(odometry.update(*cloud, {}, false).pose);
     ms.push_back(thread_cpu_ms() - begin);
   }
   const double median = median_of(ms);

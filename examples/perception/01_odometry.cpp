@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
     if (!cloud) return failed(cloud.error());
     const auto stamp = kPeriod * static_cast<std::uint64_t>(path.size());
     odometry.advance(kFirst + stamp);
-    const perception::OdometryState& state = odometry.update(*cloud);
+    const perception::OdometryState& state =
+        odometry.update(*cloud, {}, false);  // Their points have no times.
     path.push_back({1e-9 * static_cast<double>(stamp), state.pose});
   }
   if (const auto written = sim::write_tum(argv[2], path); !written) return failed(written.error());

@@ -90,7 +90,7 @@ Result<Pose3> LidarOdometry::at(std::uint64_t stamp) const {
 }
 
 const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> points,
-                                           std::span<const std::uint8_t> skipped) {
+                                           std::span<const std::uint8_t> skipped, bool deskewed) {
   if (!filter_.started()) return state_;
   std::span<const Eigen::Vector3f> used = points;
   if (skipped.size() == points.size() && !points.empty()) {
@@ -119,6 +119,7 @@ const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> poin
   } else {
     const Pose3 prior{filter_.state().position, filter_.state().rotation};
     const Matrix6 information = filter_.state().P.topLeftCorner<6, 6>().inverse();
+    registration_.set_smear(deskewed ? Smear{} : smear());
     found = registration_.align(map_, body_points_, prior, information, window_);
     judge(found);
     if (before_ && clouds_ % kSearchPeriod == 0) search_before();
@@ -133,6 +134,15 @@ const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> poin
       log_so3(moved.orientation).norm() > kInsertTurn)
     insert(dense);
   return state_;
+}
+
+Smear LidarOdometry::smear() const {
+  if (!last_pose_) return {};
+  // The times are anywhere in the sweep, and a sweep lasts from cloud to cloud: a uniform distribution.
+  const double part = 1.0 / std::sqrt(12.0);
+  const Pose3 moved = last_pose_->inverse() * filter_.pose();
+  const Eigen::Vector3d turn = log_so3(moved.orientation);
+  return {part * (moved.position + turn.cross(params_.motion.imu_position)), part * turn};
 }
 
 void LidarOdometry::apply(const Registered& found) {

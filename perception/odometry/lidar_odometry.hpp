@@ -64,8 +64,10 @@ class LidarOdometry {
   /// @param points  In base_link at that instant, m.
   /// @param skipped  One per point, not 0: on something that moves, or no surface at all, as dust (see
   ///     Scan::isolated). Such a point is neither compared nor enters the map. Empty: none.
+  /// @param deskewed  False: the points have no times, so that the cloud is distorted by the motion since the
+  ///     last one. Planes across the motion then weigh less.
   const OdometryState& update(std::span<const Eigen::Vector3f> points,
-                              std::span<const std::uint8_t> skipped = {});
+                              std::span<const std::uint8_t> skipped = {}, bool deskewed = true);
   const OdometryState& state() const { return state_; }
   /// How often each sensor's clock was set, or the sensor was silent for longer than a second.
   struct ClockSteps {
@@ -85,6 +87,8 @@ class LidarOdometry {
 
  private:
   bool start(std::uint64_t stamp);
+  /// Of a cloud that is not deskewed.
+  Smear smear() const;
   void apply(const Registered& found);
   void judge(const Registered& found);
   /// The cloud does not fit, for so much longer, s.

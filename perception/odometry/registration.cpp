@@ -47,8 +47,11 @@ void Registration::match(const VoxelPlanes& target, std::span<const Eigen::Vecto
     const Eigen::Vector3d d = place - plane->centre;
     const double noise = params_.range_noise * params_.range_noise +
                          params_.bearing_noise * params_.bearing_noise * p.squaredNorm();
+    const Eigen::Vector3d smear = R * (smear_.way + smear_.turn.cross(p));
     const auto add = [&](const Eigen::Vector3f& across, double variance) {
       const Eigen::Vector3d normal = across.cast<double>();
+      const double beside = normal.dot(smear);
+      variance += beside * beside;
       const double gate = params_.gate * std::sqrt(variance) + window;
       if (std::abs(normal.dot(d)) <= gate) matches_.push_back({p, plane->centre, normal, variance});
     };

@@ -35,6 +35,13 @@ struct Registered {
   bool converged{};
 };
 
+/// How far points lie beside their places because their times are not known: the body's motion over one
+/// standard deviation of the times, in body axes.
+struct Smear {
+  Eigen::Vector3d way{0, 0, 0};   ///< m
+  Eigen::Vector3d turn{0, 0, 0};  ///< rad
+};
+
 /// Lays clouds onto a map of planes: Gauss-Newton on point-to-plane distances with Huber's weights, in which
 /// a direction that the cloud does not determine keeps the value of the prior (solution remapping, Zhang et
 /// al. 2016).
@@ -54,6 +61,9 @@ class Registration {
     return align(target, points, prior, prior_information, window, target.levels() - 1);
   }
 
+  /// Sets the smear of the clouds that follow; none at first.
+  void set_smear(const Smear& smear) { smear_ = smear; }
+
  private:
   struct Match {
     Eigen::Vector3d point;   ///< Body frame.
@@ -66,6 +76,7 @@ class Registration {
   double inflation(const Pose3& pose);
 
   RegistrationParams params_;
+  Smear smear_{};
   std::vector<Match> matches_{};
   std::vector<ResidualDirection> directions_{};
   std::vector<std::uint64_t> patches_{};

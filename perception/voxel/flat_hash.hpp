@@ -76,8 +76,9 @@ class FlatHash {
     }
     return at;
   }
-  /// Makes room: erases the costliest of the next `count` values from the slot `hand` on (modulo the capacity),
-  /// unless none costs more than `limit`; at least `count` values must be there. `hand` moves on behind them.
+  /// Makes room: erases the costliest of the next `count` values from the slot `hand` on (modulo the
+  /// capacity), unless none costs more than `limit`; at least `count` values must be there. `hand` moves on
+  /// behind them.
   ///
   /// @param cost  Called with a slot.
   /// @return Whether a value was erased.

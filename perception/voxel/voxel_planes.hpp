@@ -28,8 +28,8 @@ struct PlanePatch {
 ///
 /// Each voxel has the running moments of its first points, and a plane as soon as they lie on one. A lookup
 /// takes the coarsest voxel whose points lie on a plane: on a wall that is the largest one, which averages
-/// most noise; beside edges a smaller one. Points beyond 80 edges of a size enter only larger voxels, as there
-/// is less than one ring of a lidar in a small one there. Voxels that were not touched while the body
+/// most noise; beside edges a smaller one. Points beyond 80 edges of a size enter only larger voxels, as
+/// there is less than one ring of a lidar in a small one there. Voxels that were not touched while the body
 /// travelled `keep_distance` are erased, a few slots at a time; at the bound, a new voxel takes the place of
 /// one that is farther or older.
 class VoxelPlanes {

@@ -55,9 +55,11 @@ void OdometryRunner::take() {
 
 void OdometryRunner::correct(const perception::Sweep& sweep, std::uint64_t end) {
   perception::Deskew deskew = perception::Deskew::none(T_base_lidar_);
+  bool deskewed = false;
   if (sweep.timed) {
     const auto pose = [this](std::uint64_t stamp) { return odometry_.at(stamp); };
     auto over = perception::Deskew::over(sweep.stamp, end, pose, T_base_lidar_);
+    deskewed = over.ok();
     if (over) deskew = std::move(*over);
   }
   const auto low = static_cast<float>(lidar_.min_range), high = static_cast<float>(lidar_.max_range);
@@ -69,7 +71,7 @@ void OdometryRunner::correct(const perception::Sweep& sweep, std::uint64_t end) 
     const float squared = p.position.squaredNorm();  // Of NaN all comparisons are false.
     if (squared >= low * low && squared <= high * high) points_.push_back(deskew(p.position, p.time));
   }
-  odometry_.update(points_);
+  odometry_.update(points_, {}, deskewed);
 }
 
 }  // namespace adit::sim
