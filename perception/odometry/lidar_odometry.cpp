@@ -18,7 +18,6 @@ constexpr double kInsertWay = 0.2,
 constexpr int kSearchPeriod = 10;       ///< Clouds between two comparisons with the map before it was lost.
 constexpr int kFirstClouds = 10;        ///< All of them enter the map.
 constexpr double kLevelRate = 0.003;    ///< How fast the frame is levelled, rad/s.
-constexpr double kMaxFree = 0.5;        ///< Without sensors of motion that the robot should have, s.
 constexpr std::uint64_t kImuPatience = 2'000'000'000;  ///< Wait for the first sample of an IMU, ns.
 
 Eigen::Matrix3d rotation_of(const Pose3& pose) { return pose.orientation.toRotationMatrix(); }

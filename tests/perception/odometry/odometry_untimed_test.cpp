@@ -11,7 +11,7 @@
 namespace adit::perception {
 namespace {
 
-constexpr std::uint64_t kFirst = 1'000'000'000'000, kPeriod = 100'000'000;  // ns
+constexpr std::uint64_t kFirstCloud = 1'000'000'000'000, kCloudPeriod = 100'000'000;  // ns
 
 /// The way along a ray to the first surface of a street along x, m: ground 1.7 m below, a facade on each
 /// side, and pillars of 1.6 m before the left one each 7.3 m, before the right and far one each 14.6 m.
@@ -68,7 +68,7 @@ double error_of_way(bool deskewed) {
   double x = 0, error = 0;
   for (int n = 0; n <= kStart + kSweeps; ++n) {
     const double speed = kSpeed * std::min(1.0, static_cast<double>(n) / kStart);
-    odometry.advance(kFirst + static_cast<std::uint64_t>(n) * kPeriod);
+    odometry.advance(kFirstCloud + static_cast<std::uint64_t>(n) * kCloudPeriod);
     odometry.update(sweep_in_street(x, speed, random), {}, deskewed);
     if (n == kStart || n == kStart + kSweeps) error = odometry.state().pose.position.x() - x - error;
     x += 0.1 * speed;
