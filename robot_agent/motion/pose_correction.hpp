@@ -46,7 +46,7 @@ class PoseCorrection {
   }
   /// An operator said where the robot is: sigma counts from here on.
   void reset_sigma() {
-    sigma_before_ = sigma_ = 0.0;
+    sigma_before_ = sigma_ = alone_ = 0.0;
     reported_from_ = reported_;
   }
   /// The driver's frame began again; reports about scans before `stamp` are of the previous one.
