@@ -95,20 +95,6 @@ void read_first_lidar(const Node& root, bool has_lidar_in_sensors, Platform& p) 
   p.lidar_highest = root.number("lidar_highest", within(0, 89), p.lidar_highest);  // Degrees.
 }
 
-/// Reads the lidars and the IMU under `sensors:`. The first lidar there replaces the one of
-/// read_first_lidar().
-void read_sensor_list(const Node& sensors, Platform& p) {
-  if (!sensors.present()) return;
-  Sensors read = read_sensors(sensors, p.lidar(), p.flies());
-  p.lidars = std::move(read.lidars);
-  p.imu = std::move(read.imu);
-  if (p.lidars.empty()) return;
-  p.lidar_height = p.lidars.front().mounting.z;
-  p.lidar_rings = p.lidars.front().rings;
-  p.lidar_lowest = p.lidars.front().lowest;
-  p.lidar_highest = p.lidars.front().highest;
-}
-
 /// Reads the choice of router, local planner and controller, and their parameters.
 void read_navigation(const Node& root, Platform& p) {
   p.stairs = root.flag("stairs", false);
@@ -122,6 +108,18 @@ void read_navigation(const Node& root, Platform& p) {
 
 }  // namespace
 
+void read_platform_sensors(const Node& sensors, Platform& p) {
+  if (!sensors.present()) return;
+  Sensors read = read_sensors(sensors, p.lidar(), p.flies());
+  p.lidars = std::move(read.lidars);
+  p.imu = std::move(read.imu);
+  if (p.lidars.empty()) return;
+  p.lidar_height = p.lidars.front().mounting.z;
+  p.lidar_rings = p.lidars.front().rings;
+  p.lidar_lowest = p.lidars.front().lowest;
+  p.lidar_highest = p.lidars.front().highest;
+}
+
 Result<Platform> load_platform_file(const std::string& path) {
   auto file = load(path);
   if (!file) return file.error();
@@ -134,7 +132,7 @@ Result<Platform> load_platform_file(const std::string& path) {
   const Node sensors = root.child_if("sensors");
   read_first_lidar(root, sensors.is_mapping() && sensors.has("lidar"), p);
   p.max_tilt = root.number("max_tilt", positive_up_to(1.5), p.max_tilt);  // rad
-  read_sensor_list(sensors, p);
+  read_platform_sensors(sensors, p);
   read_navigation(root, p);
   if (auto done = root.finish(); !done) return done.error();
   return p;

@@ -29,7 +29,7 @@ struct RobotDriver::Endpoints {
   wire::Writer<nav_msgs::msg::Odometry> odom{};
   wire::Writer<sensor_msgs::msg::Imu> imu{};
   wire::Writer<sensor_msgs::msg::BatteryState> battery{};
-  std::unique_ptr<wire::RawWriter> points{};
+  std::vector<std::unique_ptr<wire::RawWriter>> points{};  ///< By lidar.
   std::unique_ptr<wire::RawReader> cmd_vel{};
 };
 
@@ -55,15 +55,25 @@ Result<void> RobotDriver::start() {
   if (!odom) return odom.error();
   auto battery = wire::Writer<sensor_msgs::msg::BatteryState>::make(wire_, wire::topics::kBattery);
   if (!battery) return battery.error();
-  auto points = wire_.make_writer(wire::topics::kPoints, {});
-  if (!points) return points.error();
   endpoints_->odom = std::move(*odom);
   endpoints_->battery = std::move(*battery);
-  endpoints_->points = std::move(*points);
+  const bool realistic = simulation_.params().realistic;
+  for (const LidarConfig& lidar : simulation_.platform(robot_).all_lidars()) {
+    wire::TopicInfo topic = wire::topics::kPoints;
+    const std::string name = "rt/" + lidar.topic;
+    topic.name = name.c_str();
+    auto points = wire_.make_writer(topic, {});
+    if (!points) return points.error();
+    endpoints_->points.push_back(std::move(*points));
+    if (!realistic) break;  // One scan in base_link.
+  }
   if (auto listening = listen(); !listening) return listening;
   started_ = strand_.now();
-  if (simulation_.params().realistic) {
-    auto imu = wire::Writer<sensor_msgs::msg::Imu>::make(wire_, wire::topics::kImu);
+  if (realistic) {
+    auto topic = wire::topics::kImu;
+    const std::string name = "rt/" + simulation_.platform(robot_).imu.value_or(ImuConfig{}).topic;
+    topic.name = name.c_str();
+    auto imu = wire::Writer<sensor_msgs::msg::Imu>::make(wire_, topic);
     if (!imu) return imu.error();
     endpoints_->imu = std::move(*imu);
     imu_ = strand_.every(simulation_.params().step, [this] { send_imu(); });
@@ -174,25 +184,32 @@ void RobotDriver::send_battery() {
   (void)endpoints_->battery.write(battery);
 }
 
+std::function<void(const Result<std::vector<std::uint8_t>>&)> RobotDriver::sender(
+    std::weak_ptr<Endpoints> alive, std::size_t lidar) {
+  return [alive, lidar](const Result<std::vector<std::uint8_t>>& bytes) {
+    const auto endpoints = alive.lock();
+    if (endpoints && bytes) (void)endpoints->points[lidar]->write(*bytes);
+  };
+}
+
 void RobotDriver::send_points() {
   if (silent(Sensor::lidar)) return;
   if (params_.catch_up) params_.catch_up();
-  std::weak_ptr<Endpoints> alive = endpoints_;
-  const auto send = [alive](const Result<std::vector<std::uint8_t>>& bytes) {
-    const auto endpoints = alive.lock();
-    if (endpoints && bytes) (void)endpoints->points->write(*bytes);
-  };
-  if (!simulation_.params().realistic) {
-    auto job = std::make_shared<Simulation::ScanJob>(simulation_.scan(robot_));
-    strand_.compute(
-        {.name = "scan", .modelled = params_.scan_delay},
-        [job, header = header(Sensor::lidar, strand_.now(), "base_link")] {
-          return cloud_message(job->compute(), header);
-        },
-        send);
+  if (simulation_.params().realistic) {
+    for (std::size_t lidar = 0; lidar < endpoints_->points.size(); ++lidar) send_sweep(lidar);
     return;
   }
-  auto job = std::make_shared<SweepJob>(simulation_.sweep(robot_));
+  auto job = std::make_shared<Simulation::ScanJob>(simulation_.scan(robot_));
+  strand_.compute(
+      {.name = "scan", .modelled = params_.scan_delay},
+      [job, header = header(Sensor::lidar, strand_.now(), "base_link")] {
+        return cloud_message(job->compute(), header);
+      },
+      sender(endpoints_, 0));
+}
+
+void RobotDriver::send_sweep(std::size_t lidar) {
+  auto job = std::make_shared<SweepJob>(simulation_.sweep(robot_, lidar));
   if (!losses_.empty()) job->loss = losses_.back();
   job->covered = covers_ > 0;
   const Time begin = simulated(simulation_.now() - simulation_.sweep_duration()) + lidar_clock_;
@@ -200,10 +217,10 @@ void RobotDriver::send_points() {
   if (random_.chance(noise_ * kLateScan)) delay += kLongestDelay;
   strand_.compute(
       {.name = "scan", .modelled = delay},
-      [job, header = header(Sensor::lidar, begin, simulation_.platform(robot_).lidar().frame)] {
+      [job, header = header(Sensor::lidar, begin, simulation_.platform(robot_).all_lidars()[lidar].frame)] {
         return cloud_message(job->trace(), header);
       },
-      send);
+      sender(endpoints_, lidar));
 }
 
 }  // namespace adit::sim

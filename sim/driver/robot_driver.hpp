@@ -73,6 +73,10 @@ class RobotDriver {
   void send_imu();
   void send_battery();
   void send_points();
+  void send_sweep(std::size_t lidar);
+  /// Writes a cloud of that lidar, unless the driver is gone by then.
+  static std::function<void(const Result<std::vector<std::uint8_t>>&)> sender(std::weak_ptr<Endpoints> alive,
+                                                                              std::size_t lidar);
 
   Simulation& simulation_;
   std::size_t robot_;

@@ -47,6 +47,14 @@ void read_body(const Node& robot, const Scenario& scenario, RobotSpec& spec) {
     robot.child("platform").fail(known.error().reason, known.error().text);
 }
 
+// In place of those of the platform.
+void read_sensors(const Node& robot, const Scenario& scenario, RobotSpec& spec) {
+  if (!robot.has("sensors")) return;
+  config::read_platform_sensors(robot.child("sensors"), spec.settings.platform);
+  if (scenario.lidar != LidarKind::full)
+    robot.child("sensors").fail(Reason::bad_argument, "expected lidar: full, which has a place and a topic");
+}
+
 void read_battery(const Node& robot, RobotSpec& spec) {
   const Node battery = robot.child_if("battery");
   if (!battery.present()) return;
@@ -73,6 +81,7 @@ RobotSpec read_spec(const Node& robot, const Scenario& scenario, Duration lock_l
   if (command::valid_name(spec.id) && !command::valid_robot_name(spec.id))
     robot.child("id").fail(Reason::bad_argument, std::string("expected ") + command::kRobotName);
   if (!has_file || robot.has("platform")) read_body(robot, scenario, spec);
+  read_sensors(robot, scenario, spec);
   if (!has_file || robot.has("pose")) {
     const std::vector<double> pose = robot.numbers("pose", 3, 3, config::within(-1e5, 1e5));
     if (pose.size() == 3) spec.pose = {pose[0], pose[1], wrap_angle(pose[2])};

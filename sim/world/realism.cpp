@@ -35,10 +35,14 @@ Pose3 true_lidar(const Pose3& nominal, double noise, std::uint64_t seed) {
 
 Realism::Realism(const Platform& platform, const ImuParams& imu_params, double noise, std::uint64_t seed)
     : chassis(platform),
-      imu(of_platform(imu_params, platform), nominal_imu(platform), noise, derive_seed(seed, 1)),
-      T_base_lidar(true_lidar(platform.lidar().mounting.pose(), noise, derive_seed(seed, 2))) {
-  lidar.noise = noise;
-  lidar.bias = Random(derive_seed(seed, 3)).uniform(-kLidarBias, kLidarBias);
+      imu(of_platform(imu_params, platform), nominal_imu(platform), noise, derive_seed(seed, 1)) {
+  for (const LidarConfig& config : platform.all_lidars()) {
+    const std::uint64_t part = 2 * lidars.size() + 2;
+    MountedLidar& lidar = lidars.emplace_back();
+    lidar.T_base_lidar = true_lidar(config.mounting.pose(), noise, derive_seed(seed, part));
+    lidar.errors.noise = noise;
+    lidar.errors.bias = Random(derive_seed(seed, part + 1)).uniform(-kLidarBias, kLidarBias);
+  }
 }
 
 }  // namespace adit::sim

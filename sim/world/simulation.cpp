@@ -78,7 +78,7 @@ Result<void> Simulation::add(const RobotStart& start) {
   OdometryParams odometry = params_.odometry;
   odometry.turn = std::max(odometry.turn, params_.noise * platform.turn_error);
   robots_.push_back({start.id, Body(platform, start.pose, params_.watchdog), Odometry(odometry, seed),
-                     std::move(ground), lidar_of(platform)});
+                     std::move(ground), lidar_of(platform, platform.lidar())});
   Robot& robot = robots_.back();
   robot.truth.pose = Pose3::level(start.pose, z);
   robot.start_ground = floor;
@@ -303,7 +303,8 @@ void Simulation::measure(std::size_t index) {
 }
 
 // Robots with the same share its pattern.
-std::shared_ptr<const LidarPattern> Simulation::lidar_of(const Platform& platform) const {
+std::shared_ptr<const LidarPattern> Simulation::lidar_of(const Platform& platform,
+                                                         const LidarConfig& lidar) const {
   LidarParams params = params_.lidar;
   if (params.folded && platform.flies()) {
     // One level ring: ground, steps and holes do not stand in its way.
@@ -314,9 +315,9 @@ std::shared_ptr<const LidarPattern> Simulation::lidar_of(const Platform& platfor
     params.step = platform.step;
     params.drop = std::max(params.drop, 1.5 * platform.step);
   } else {
-    params.rings = platform.lidar_rings;
-    params.lowest = platform.lidar_lowest;
-    params.highest = platform.lidar_highest;
+    params.rings = lidar.rings;
+    params.lowest = lidar.lowest;
+    params.highest = lidar.highest;
   }
   for (const Robot& robot : robots_) {
     const LidarParams& other = robot.lidar->params();

@@ -122,8 +122,9 @@ class Simulation {
   /// The lidar of a robot as the world is now.
   ScanJob scan(std::size_t robot) const;
 
-  /// Realistic: the sweep of a robot's lidar that ends now, in the lidar's own frame.
-  SweepJob sweep(std::size_t robot) const;
+  /// Realistic: the sweep of a robot's lidar that ends now, in the lidar's own frame. `lidar`: index of
+  /// Platform::all_lidars().
+  SweepJob sweep(std::size_t robot, std::size_t lidar = 0) const;
   /// Realistic: how long a sweep lasts.
   Duration sweep_duration() const;
   /// Realistic: what the inertial sensor measured since the last call.
@@ -150,7 +151,7 @@ class Simulation {
 
   static Rectangle footprint(const Platform& platform, const Pose2& pose);
   Result<void> add(const RobotStart& start);
-  std::shared_ptr<const LidarPattern> lidar_of(const Platform& platform) const;
+  std::shared_ptr<const LidarPattern> lidar_of(const Platform& platform, const LidarConfig& lidar) const;
   void move(std::size_t robot);
   void drive(std::size_t robot);
   void equip(const RobotStart& start);

@@ -10,6 +10,7 @@ namespace adit::sim {
 namespace {
 
 constexpr double kSettled = 1e6;  // s: an error process of any correlation time has reached its deviation
+constexpr std::uint64_t kLidarParts = 100;         // of a sweep's seed; below are those of its faults
 constexpr std::uint64_t kSensorParts = 1'000'000;  // seeds of parts from here on are the sensors'
 
 }  // namespace
@@ -21,8 +22,12 @@ void Simulation::equip(const RobotStart& start) {
   const std::uint64_t seed = derive_seed(params_.seed, kSensorParts + robots_.size());
   robot.real.emplace(platform, params_.imu, params_.noise, seed);
   Realism& real = *robot.real;
-  real.lidar.dust = params_.dust;
-  if (params_.dropouts) real.lidar.dropouts = *params_.dropouts;
+  for (std::size_t n = 0; n < real.lidars.size(); ++n) {
+    MountedLidar& lidar = real.lidars[n];
+    lidar.pattern = n == 0 ? robot.lidar : lidar_of(platform, platform.lidars[n]);
+    lidar.errors.dust = params_.dust;
+    if (params_.dropouts) lidar.errors.dropouts = *params_.dropouts;
+  }
   Truth& truth = robot.truth;
   real.ground = {truth.pose.position.z(), 0.0, 0.0};
   if (const auto ground =
@@ -89,17 +94,19 @@ std::uint64_t Simulation::sensor_seed(std::size_t robot) const {
   return derive_seed(params_.seed, 2 * kSensorParts + robot);
 }
 
-SweepJob Simulation::sweep(std::size_t index) const {
+SweepJob Simulation::sweep(std::size_t index, std::size_t of) const {
   const Robot& robot = robots_[index];
   const Realism& real = *robot.real;
   SweepJob job;
   job.world = world_;
-  job.lidar = robot.lidar;
-  job.errors = real.lidar;
+  const MountedLidar& lidar = real.lidars[of];
+  job.lidar = lidar.pattern;
+  job.errors = lidar.errors;
   job.duration = seconds(sweep_duration());
   job.seed = derive_seed(params_.seed ^ (steps_ << 8), 2 * index + 2);
+  if (of > 0) job.seed = derive_seed(job.seed, kLidarParts + of);
   for (const Pose3& T_world_base : real.history)
-    job.T_world_lidar.push_back(T_world_base * real.T_base_lidar);
+    job.T_world_lidar.push_back(T_world_base * lidar.T_base_lidar);
   job.others.resize(sweep_steps());
   for (std::size_t interval = 0; interval < job.others.size(); ++interval) {
     std::vector<BodyBox>& others = job.others[interval];

@@ -217,6 +217,28 @@ TEST(Scenario, FaultsOfSweepsSayWhatIsExpected) {
   }
 }
 
+TEST(Scenario, SensorsOfARobotTakeThePlaceOfItsPlatforms) {
+  const std::string two =
+      "pose: [1, 0, 0], sensors: {lidar: [{x: 0.5, y: 0, z: 0.4}, "
+      "{x: -0.5, y: 0, z: 0.6, yaw: 3.1, topic: rear, frame: rear, rings: 8}], imu: {x: 0, y: 0, z: 0.1}}";
+  const auto s = parse_scenario(swept(with("pose: [1, 0, 0]", two)), "b.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().text;
+  const Platform& platform = s->robots[0].settings.platform;
+  ASSERT_EQ(platform.all_lidars().size(), 2U);
+  EXPECT_EQ(platform.lidar_height, 0.4);
+  EXPECT_EQ(platform.all_lidars()[1].topic, "rear");
+  EXPECT_EQ(platform.all_lidars()[1].rings, 8);
+  EXPECT_TRUE(platform.imu.has_value());
+  EXPECT_EQ(s->robots[1].settings.platform.all_lidars().size(), 1U);
+  const auto wrong = parse_scenario(
+      swept(with("pose: [1, 0, 0]", "pose: [1, 0, 0], sensors: {lidar: {x: 0.5, y: 0, z: -1}}")), "b.yaml");
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_EQ(wrong.error().text.find("b.yaml:6: "), 0U) << wrong.error().text;
+  const auto planar = parse_scenario(with("pose: [1, 0, 0]", two), "b.yaml");
+  ASSERT_FALSE(planar.ok());
+  EXPECT_NE(planar.error().text.find("lidar: full"), std::string::npos) << planar.error().text;
+}
+
 TEST(Scenario, DustIsOfTheWorldAndNeedsSingleBeams) {
   const auto dusty = swept(with("ceiling: 3}", "ceiling: 3, dust: 0.05}"));
   EXPECT_EQ(parse_scenario(dusty, "b.yaml")->world.dust, 0.05);

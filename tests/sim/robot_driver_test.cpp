@@ -28,7 +28,8 @@ std::int64_t stamp_of(const std_msgs::msg::Header& header) {
 /// A robot in a box of walls, and what it sent in 10 s. Its driver has the fault from 4 s to 7 s.
 struct Sent {
   using Fault = std::function<void(RobotDriver&, bool begins)>;
-  explicit Sent(double noise, const Fault& fault = {}) : simulation(make(noise)) {
+  explicit Sent(double noise, const Fault& fault = {}, const Platform& platform = {})
+      : simulation(make(noise, platform)) {
     const auto keep = [this](auto& samples, auto& clock) {
       return [&samples, &clock, this](const auto& sample, const wire::SampleInfo&) {
         samples.push_back(sample);
@@ -41,6 +42,10 @@ struct Sent {
         wire::make_reader<sensor_msgs::msg::Imu>(*agent, wire::topics::kImu, *strand, keep(imu, imu_came));
     auto points_reader = wire::make_reader<sensor_msgs::msg::PointCloud2>(*agent, wire::topics::kPoints,
                                                                           *strand, keep(clouds, clouds_came));
+    auto rear_topic = wire::topics::kPoints;
+    rear_topic.name = "rt/rear/points";
+    auto rear_reader =
+        wire::make_reader<sensor_msgs::msg::PointCloud2>(*agent, rear_topic, *strand, keep(rear, rear_came));
     RobotDriver driver(simulation, 0, *strand, *body, {});
     EXPECT_TRUE(driver.start());
     const Timer step = strand->every(10ms, [this] {
@@ -57,14 +62,14 @@ struct Sent {
   }
   static constexpr Duration kBegin{4s}, kEnd{7s};
 
-  static Simulation make(double noise) {
+  static Simulation make(double noise, const Platform& platform) {
     const std::array<Box, 2> walls{Box{8, 8.5, -8, 8, 0, 3}, Box{-8, 8, 6, 6.5, 0, 3}};
     SimulationParams params;
     params.realistic = true;
     params.noise = noise;
     params.odometry = OdometryParams::realistic().scaled(noise);
     return *Simulation::create(std::make_shared<const World>(*make_box_world(walls, 0, 3)),
-                               {{"r1", Platform{}, {0, 0, 0}}}, params);
+                               {{"r1", platform, {0, 0, 0}}}, params);
   }
 
   /// How many samples of odometry came after a newer one.
@@ -83,8 +88,8 @@ struct Sent {
   std::unique_ptr<wire::Participant> agent{network.join(101, "r1")}, body{network.join(101, "r1/driver")};
   std::vector<nav_msgs::msg::Odometry> odometry{};
   std::vector<sensor_msgs::msg::Imu> imu{};
-  std::vector<sensor_msgs::msg::PointCloud2> clouds{};
-  std::vector<Duration> odometry_came{}, imu_came{}, clouds_came{};
+  std::vector<sensor_msgs::msg::PointCloud2> clouds{}, rear{};
+  std::vector<Duration> odometry_came{}, imu_came{}, clouds_came{}, rear_came{};
 };
 
 TEST(RobotDriver, SendsTheFieldsThatLidarDriversSend) {
@@ -264,6 +269,51 @@ TEST(RobotDriver, CoveredLidarSeesNothingFartherThanItsCover) {
     covered += farthest < 0.3001;
   }
   EXPECT_NEAR(covered, 30, 1);
+}
+
+/// The same with a lidar a metre behind the first.
+Platform two_lidars() {
+  Platform out;
+  out.lidars.assign(2, out.lidar());
+  out.lidars[0].mounting.x = 0.5;
+  out.lidars[1].mounting = {.x = -0.5, .z = 0.5, .yaw = M_PI};
+  out.lidars[1].topic = "rear/points";
+  out.lidars[1].frame = "rear";
+  return out;
+}
+
+TEST(RobotDriver, EachOfSeveralLidarsSweepsFromItsPlaceOnItsTopic) {
+  const Sent sent(0.0, {}, two_lidars());
+  ASSERT_NEAR(sent.clouds.size(), 99, 2);
+  ASSERT_EQ(sent.rear.size(), sent.clouds.size());
+  EXPECT_EQ(sent.clouds.back().header().frame_id(), "lidar");
+  EXPECT_EQ(sent.rear.back().header().frame_id(), "rear");
+  EXPECT_EQ(stamp_of(sent.rear.back().header()), stamp_of(sent.clouds.back().header()));
+  const Simulation& s = sent.simulation;
+  const Pose3 front = s.sweep(0, 0).T_world_lidar.back(), rear = s.sweep(0, 1).T_world_lidar.back();
+  EXPECT_NEAR((front.position - rear.position).norm(), 1.0, 1e-9);
+  // Both see the wall x = 8 where it is.
+  for (const SweepJob& job : {s.sweep(0, 0), s.sweep(0, 1)}) {
+    int met = 0;
+    for (const SweepPoint& p : job.trace()) {
+      const Eigen::Vector3d at = job.T_world_lidar.back() * p.position().cast<double>();
+      met += std::abs(at.y()) < 2.0 && at.z() > 0.4 && std::abs(at.x() - 8.0) < 0.15;
+    }
+    EXPECT_GT(met, 300);
+  }
+}
+
+TEST(RobotDriver, FirstOfSeveralLidarsMeasuresAsIfItWereAlone) {
+  Platform one = two_lidars();
+  one.lidars.pop_back();
+  const auto trace = [](const Platform& platform) {
+    Simulation s = Sent::make(1.0, platform);
+    for (int n = 0; n < 20; ++n) s.step();
+    return s.sweep(0).trace();
+  };
+  const auto alone = trace(one), of_two = trace(two_lidars());
+  ASSERT_EQ(alone.size(), of_two.size());
+  EXPECT_EQ(std::memcmp(alone.data(), of_two.data(), alone.size() * sizeof(SweepPoint)), 0);
 }
 
 TEST(RobotDriver, SilentImuSendsNothingAndNothingOfItLater) {
