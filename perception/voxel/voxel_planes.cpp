@@ -50,7 +50,9 @@ std::size_t VoxelPlanes::insert(std::span<const Eigen::Vector3d> points, const E
     for (const Eigen::Vector3d& p : points) {
       const double squared = (p - lidar).squaredNorm();
       if (squared > reach * reach) continue;
-      const Eigen::Vector3i at = (p * scale).array().floor().cast<int>();
+      const Eigen::Vector3d index = (p * scale).array().floor();
+      if (!(index.cwiseAbs().maxCoeff() < kMaxIndex)) continue;  // Also of NaN.
+      const Eigen::Vector3i at = index.cast<int>();
       const std::uint64_t key = voxel_key(at.x(), at.y(), at.z());
       Cell* cell = cells.size() < params_.max_voxels ? &cells.at(key) : cells.find(key);
       if (!cell) cell = make(level, key, lidar, static_cast<float>(std::sqrt(squared)), now);
@@ -181,7 +183,9 @@ std::optional<PlanePatch> VoxelPlanes::find(const Eigen::Vector3d& place, int to
 std::optional<PlanePatch> VoxelPlanes::find_in(const Eigen::Vector3d& place, int top) const {
   for (int level = top; level >= 0; --level) {
     const double size = edge(level);
-    const Eigen::Vector3i at = (place / size).array().floor().cast<int>();
+    const Eigen::Vector3d index = (place / size).array().floor();
+    if (!(index.cwiseAbs().maxCoeff() < kMaxIndex)) return std::nullopt;  // Also of NaN.
+    const Eigen::Vector3i at = index.cast<int>();
     const Cell* cell = levels_[static_cast<std::size_t>(level)].find(voxel_key(at.x(), at.y(), at.z()));
     if (!cell) return std::nullopt;  // A smaller voxel there would lie in this one.
     const bool line = cell->line && cell->clouds >= params_.line_clouds;
