@@ -23,6 +23,7 @@ constexpr double kMaxInnovation = 30.0;  ///< Squared standard deviations for ea
 constexpr int kFirstMotion = 5;          ///< Clouds in a row that fit, after which the motion is known.
 constexpr double kLeastWindow = 0.05;    ///< m
 constexpr double kMaxFree = 0.5;         ///< Without sensors of motion that the robot should have, s.
+constexpr double kBias = 0.0058;         ///< Of a registration, as in drift.cpp, m.
 constexpr double kCarried = 2.0;         ///< Speed of a body that is carried or slides, m/s.
 constexpr double kSlid = 0.5;            ///< A turn beyond what a registration finds, rad.
 
@@ -52,6 +53,7 @@ void LidarOdometry::judge(const Registered& found) {
     if (state_.health != Localisation::lost) state_.health = Localisation::weak;
     return;
   }
+  if (!contradicted && share >= kLeastShare) compare_wheels(found);
   if (contradicted || too_fast || share < kLeastShare || !(distance < kMaxInnovation)) return miss(dt);
   const bool was_lost = state_.health == Localisation::lost;
   ++good_;
@@ -80,6 +82,31 @@ void LidarOdometry::judge(const Registered& found) {
   }
   const bool moved = filter_.free_for() < kMaxFree || (!params_.motion.has_imu && !params_.motion.has_wheels);
   state_.health = strong && moved && !state_.unplaced ? Localisation::ok : Localisation::weak;
+}
+
+void LidarOdometry::compare_wheels(const Registered& found) {
+  const MotionState& prior = filter_.state();
+  const Vector6 innovation = prior.to(found.pose);
+  Eigen::Vector3d off(0, 0, 0);
+  double by_lidar = 0, by_wheels = 0;
+  bool seen = true;
+  const Eigen::Vector3d forward = prior.rotation * Eigen::Vector3d::UnitX();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<std::size_t>(axis);
+    const Eigen::Vector3d u = found.localizability.axes_t.col(axis);
+    if (found.localizability.t[n] != Observability::strong) {
+      seen = seen && std::abs(u.dot(forward)) < 0.3;
+      continue;
+    }
+    // The registration went only a part of the way to where the cloud alone would lie.
+    const double P = u.dot(prior.P.block<3, 3>(0, 0) * u);
+    const double R = found.localizability.sigma_t[axis] * found.localizability.sigma_t[axis] + kBias * kBias;
+    off -= (P + R) / P * u.dot(innovation.head<3>()) * u;
+    by_lidar = std::max(by_lidar, R);
+    // What is usual of the wheels, not what the slip adds.
+    by_wheels = std::max(by_wheels, filter_.wheels_slip() ? kBias * kBias : P);
+  }
+  if (seen) filter_.compare_wheels(off, by_lidar, by_wheels);
 }
 
 void LidarOdometry::miss(double dt) {
@@ -147,6 +174,7 @@ void LidarOdometry::search_before() {
   inserted_at_.reset();
   drift_pose_.reset();
   last_pose_.reset();
+  way_pose_.reset();
 }
 
 void LidarOdometry::relocalised(const Pose3& correction, double sigma, double sigma_heading) {

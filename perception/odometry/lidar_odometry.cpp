@@ -17,8 +17,19 @@ constexpr double kInsertWay = 0.2,
                  kInsertTurn = 0.05;    ///< Motion after which a cloud enters the map, m, rad.
 constexpr int kSearchPeriod = 10;       ///< Clouds between two comparisons with the map before it was lost.
 constexpr int kFirstClouds = 10;        ///< All of them enter the map.
+constexpr double kLeastWay = 0.02;      ///< A shorter way is noise of the registrations, m.
 constexpr double kLevelRate = 0.003;    ///< How fast the frame is levelled, rad/s.
 constexpr std::uint64_t kImuPatience = 2'000'000'000;  ///< Wait for the first sample of an IMU, ns.
+
+// Per axis, of the widest ranges that sensors have: 16 g and 2000 degrees/s. The sample is in the body's
+// axes, so the bound is that of the vector.
+const double kMaxForce = std::sqrt(3.0) * 16 * kStandardGravity,
+             kMaxRate = std::sqrt(3.0) * 2000 * M_PI / 180;
+
+/// Whether a sensor can measure it; false also for NaN.
+bool is_plausible(const ImuSample& sample) {
+  return sample.accel.norm() <= kMaxForce && sample.gyro.norm() <= kMaxRate;
+}
 
 Eigen::Matrix3d rotation_of(const Pose3& pose) { return pose.orientation.toRotationMatrix(); }
 
@@ -35,12 +46,20 @@ LidarOdometry::LidarOdometry(const LidarOdometryParams& params)
 
 void LidarOdometry::add(const ImuSample& sample) {
   if (!params_.motion.has_imu) return;
+  if (!is_plausible(sample)) {
+    ++refused_samples_;
+    return;
+  }
   if (!filter_.started()) watch_.add(sample);
   filter_.add(sample);
 }
 
 void LidarOdometry::add(const BodyMotion& sample) {
   if (!params_.motion.has_wheels) return;
+  if (!sample.pose.position.allFinite() || !sample.pose.orientation.coeffs().allFinite()) {
+    ++refused_samples_;
+    return;
+  }
   if (!filter_.started()) watch_.add(sample);
   if (!newest_wheels_ || sample.stamp > newest_wheels_->stamp ||
       !same_clock(sample.stamp, newest_wheels_->stamp))
@@ -161,10 +180,7 @@ void LidarOdometry::apply(const Registered& found) {
   next.add(K * innovation);
   next.position = found.pose.position;
   next.rotation = found.pose.orientation;
-  // The covariance of the pose falls by D; what the gain carries over falls with it.
-  const Matrix6 D = P * found.information * (Matrix6::Identity() + P * found.information).inverse() * P;
-  next.P -= (K * D * K.transpose()).eval();
-  next.P = (0.5 * (next.P + next.P.transpose())).eval();
+  next.P = after_registration(next.P, found.information, seen);
   filter_.correct(next);
   state_.localizability = found.localizability;
 }
@@ -197,18 +213,23 @@ void LidarOdometry::report() {
   const Matrix6 now = turn * s.P.topLeftCorner<6, 6>() * turn.transpose();
   if (last_pose_) {
     const Pose3 moved = last_pose_->inverse() * local;
-    travelled_ += moved.position.norm();
+    if (!way_pose_ || (local.position - *way_pose_).norm() > kLeastWay) {
+      travelled_ += way_pose_ ? (local.position - *way_pose_).norm() : 0.0;
+      way_pose_ = local.position;
+    }
     if (dt > 0 && filter_.free_for() >= dt)
       filter_.set_rates((local.position - last_pose_->position) / dt, log_so3(moved.orientation) / dt);
   }
   if (bad_ == 0) {
     // What does not enter the map is no drift of it: where the next cloud fits, it is found again.
-    if (drift_pose_)
-      drift_.add(local.position - drift_pose_->position,
-                 log_so3(drift_pose_->orientation.conjugate() * local.orientation).norm(), reach_,
-                 state_.localizability, pose_covariance_, now);
+    if (!drift_pose_) drift_pose_ = local;
+    const Eigen::Vector3d moved = local.position - drift_pose_->position;
+    const double turned = log_so3(drift_pose_->orientation.conjugate() * local.orientation).norm();
+    const bool counts = moved.norm() > kLeastWay || turned * reach_ > kLeastWay;
+    drift_.add(counts ? moved : Eigen::Vector3d::Zero(), counts ? turned : 0.0, reach_, state_.localizability,
+               pose_covariance_, now);
+    if (counts) drift_pose_ = local;
     pose_covariance_ = now;
-    drift_pose_ = local;
   }
   last_pose_ = local;
   last_stamp_ = s.stamp;
@@ -216,6 +237,7 @@ void LidarOdometry::report() {
   state_.stamp = s.stamp;
   state_.pose = odom_pose(local);
   state_.velocity = T_odom_local_.orientation * filter_.velocity();
+  state_.wheels_slip = filter_.wheels_slip_lasts();
   state_.gyro_bias = s.gyro_bias;
   state_.accel_bias = s.accel_bias;
   state_.wheel_scale = s.wheel_scale;

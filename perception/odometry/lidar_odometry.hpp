@@ -69,6 +69,10 @@ class LidarOdometry {
   const OdometryState& update(std::span<const Eigen::Vector3f> points,
                               std::span<const std::uint8_t> skipped = {}, bool deskewed = true);
   const OdometryState& state() const { return state_; }
+  /// Samples beyond what a sensor can measure, or that are no numbers; none of them is used.
+  std::uint64_t refused_samples() const { return refused_samples_; }
+  /// Way of the body, of which what is shorter than the noise of standing does not count, m.
+  double travelled() const { return travelled_; }
   /// How often each sensor's clock was set, or the sensor was silent for longer than a second.
   struct ClockSteps {
     int lidar{}, imu{}, wheels{};
@@ -91,6 +95,8 @@ class LidarOdometry {
   Smear smear() const;
   void apply(const Registered& found);
   void judge(const Registered& found);
+  /// Compares the way of the wheels since the last cloud with the registered one.
+  void compare_wheels(const Registered& found);
   /// The cloud does not fit, for so much longer, s.
   void miss(double dt);
   void begin_map();
@@ -128,11 +134,13 @@ class LidarOdometry {
   Pose3 T_odom_local_{};
   OdometryState state_{};
   Eigen::Matrix<double, 6, 6> pose_covariance_{
-      Eigen::Matrix<double, 6, 6>::Zero()};  ///< After the last cloud.
-  std::optional<Pose3> last_pose_{};         ///< Of the last cloud, local.
-  std::optional<Pose3> drift_pose_{};        ///< Of the last cloud that fitted, local.
-  double missed_for_{};                      ///< Since the last cloud that fitted, s.
-  bool established_{};                       ///< Enough clouds have fitted for a map to be lost in.
+      Eigen::Matrix<double, 6, 6>::Zero()};    ///< After the last cloud.
+  std::optional<Pose3> last_pose_{};           ///< Of the last cloud, local.
+  std::optional<Pose3> drift_pose_{};          ///< Until which the drift was accounted for, local.
+  std::optional<Eigen::Vector3d> way_pose_{};  ///< Until which the way was counted, local.
+  std::uint64_t refused_samples_{};
+  double missed_for_{};  ///< Since the last cloud that fitted, s.
+  bool established_{};   ///< Enough clouds have fitted for a map to be lost in.
   std::uint64_t last_stamp_{};
   std::optional<Pose3> inserted_at_{};
   std::uint64_t first_imu_wait_{};

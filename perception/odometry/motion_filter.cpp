@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "perception/odometry/motion_filter.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace adit::perception {
 namespace {
@@ -11,8 +14,6 @@ using S = MotionState;
 
 constexpr std::uint64_t kStep = 10'000'000;               ///< ns
 constexpr std::uint64_t kWheelPeriod = 40'000'000;        ///< Between two corrections by the wheels, ns.
-constexpr double kSlipGate = 12.0;                        ///< Squared standard deviations.
-constexpr double kMaxSlip = 1.5;                          ///< A slip that lasts longer is believed, s.
 constexpr double kStillSpeed = 0.005, kStillTurn = 0.01;  ///< Slower is rest, m/s, rad/s.
 constexpr double kStillGyro = 0.03;                       ///< With its bias removed, rad/s.
 constexpr double kRestSpeed = 0.005, kRestTurn = 0.002;   ///< Standard deviations at rest, m/s, rad/s.
@@ -21,6 +22,7 @@ constexpr double kRestSpeed = 0.005, kRestTurn = 0.002;   ///< Standard deviatio
 constexpr double kTiltSigma = 0.0087, kTiltTime = 2.0;
 constexpr double kLeastTilt = 1e-6;     ///< Less is no measurement, rad.
 constexpr double kForgetScale = 200.0;                    ///< Way over which the scale may change, m.
+constexpr double kOpenAcceleration = 0.05;                ///< Gravity of a tilt by 0.3 degrees, m/s2.
 constexpr double kSilentPeriods = 2.5;  ///< Between two sweeps of a slow lidar that is heard.
 constexpr double kSlowestSweeps = 2.0;  ///< Between two sweeps of one clock, s.
 /// How long the body may have moved while its lidar's clock was set, s: two sweeps at least; without scans
@@ -51,7 +53,8 @@ void MotionFilter::start(std::uint64_t stamp, const Pose3& T_odom_base, const Ei
   pending_ = {};
   wheels_used_ = attitude_used_ = stamp;
   still_for_ = at_rest ? 1.0 : 0.0;
-  slipping_for_ = 0.0;
+  slip_.clear();
+  unseen_for_ = rolled_for_ = 0.0;
   gyro_.setZero();
   history_.assign(1, {stamp, T_odom_base});
 }
@@ -106,9 +109,13 @@ void MotionFilter::begin_again(std::uint64_t stamp, double unseen) {
   state_.stamp = wheels_used_ = attitude_used_ = stamp;
   state_.velocity.setZero();
   gyro_.setZero();
-  still_for_ = slipping_for_ = 0.0;
+  still_for_ = unseen_for_ = rolled_for_ = 0.0;
   history_.assign(1, {stamp, base_pose(state_)});
   ++clock_steps_;
+  widen(unseen);
+}
+
+void MotionFilter::widen(double unseen) {
   // Whatever the body did meanwhile lies within these bounds; the standard deviation of what lies anywhere
   // within a bound is that bound by the square root of three.
   const auto square = [](double v) { return v * v / 3; };
@@ -170,6 +177,7 @@ void MotionFilter::step_by_wheels(double dt, const Pose3& from, const Pose3& to)
   pending_.rolled += pending_.rotation * moved.position;
   pending_.rotation = (pending_.rotation * moved.orientation).normalized();
   pending_.rolled_dt += dt;
+  rolled_for_ += dt;
   pending_.turned += dt * gyro_.norm();
   pending_.way += moved.position.norm();
   const bool still = moved.position.norm() < kStillSpeed * dt && gyro_.norm() < kStillTurn;
@@ -216,6 +224,13 @@ void MotionFilter::propagate_covariance() {
     diagonal.segment<3>(S::kR).array() += square(params_.gyro_noise) * imu + turn;
     diagonal.segment<3>(S::kV).array() += square(params_.accel_noise) * imu;
     diagonal.segment<3>(S::kP).array() += square(params_.accel_noise) * imu * imu * imu / 3;
+    if (slip_.slipping()) {
+      // Nothing holds the velocity: the error of tilt and bias adds up.
+      const double unseen = unseen_for_ + imu;
+      diagonal.segment<3>(S::kV).array() +=
+          square(kOpenAcceleration) * (square(unseen) - square(unseen_for_));
+      unseen_for_ = unseen;
+    }
     diagonal.segment<3>(S::kBg).array() += square(params_.gyro_walk) * imu;
     diagonal.segment<3>(S::kBa).array() += square(params_.accel_walk) * imu;
   }
@@ -226,6 +241,11 @@ void MotionFilter::propagate_covariance() {
         square(0.02 * pending_.way) + square(0.2 * pending_.turned) + square(0.002) * rolled;
     const double slip = square(std::max(params_.wheel_slip, 0.1) * pending_.way) + square(0.01) * rolled;
     diagonal.segment<3>(S::kP).array() += slip;
+    // A slip goes on: its error grows with the time since the lidar saw the way.
+    const double unseen = unseen_for_ + rolled;
+    diagonal.segment<3>(S::kP).array() +=
+        slip_.bound().squaredNorm() * (square(unseen) - square(unseen_for_));
+    unseen_for_ = unseen;
     diagonal.segment<3>(S::kV).array() += square(params_.max_acceleration * rolled);
   }
   if (free > 0) {
@@ -257,6 +277,7 @@ void MotionFilter::use_wheels(std::uint64_t from, std::uint64_t to) {
   H.block<3, 3>(0, S::kV) = R_inverse;
   H.block<3, 3>(0, S::kR) = skew(in_body);
   if (at_rest()) {
+    slip_.rest(dt);
     const Eigen::Vector3d rest = Eigen::Vector3d::Constant(kRestSpeed * kRestSpeed);
     if (!update(H, -in_body, rest, 1e9)) return;
     Eigen::Matrix<double, 3, S::kSize> G = Eigen::Matrix<double, 3, S::kSize>::Zero();
@@ -276,8 +297,27 @@ void MotionFilter::use_wheels(std::uint64_t from, std::uint64_t to) {
                         0.1 + 0.05 * speed);
   if (params_.flies) sigma.setConstant(0.1 + 0.05 * speed);
   if (!params_.flies) measured.z() = 0.0;
-  const double gate = slipping_for_ < kMaxSlip ? kSlipGate : 1e9;
-  slipping_for_ = update(H, measured - expected, sigma.cwiseAbs2(), gate) ? 0.0 : slipping_for_ + dt;
+  const Eigen::Vector3d residual = measured - expected, usual = sigma.cwiseAbs2();
+  if (!slip_.slipping() && update(H, residual, usual, SlipWatch::kGate)) return;
+  const Eigen::Vector3d known = (H * state_.P * H.transpose()).diagonal();
+  slip_.compare(residual, known, usual, dt);
+  // The contradiction bounds the error of the speed: it says something only where less is known, and never
+  // more.
+  Eigen::Vector3d variance = usual;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double bound = slip_.bound()[axis] * slip_.bound()[axis];
+    if (bound > usual[axis])
+      variance[axis] = known[axis] > bound ? bound * known[axis] / (known[axis] - bound) : 1e6;
+  }
+  update(H, residual, variance, 1e9);
+}
+
+void MotionFilter::compare_wheels(const Eigen::Vector3d& off, double by_lidar, double by_wheels) {
+  unseen_for_ = 0.0;
+  const double dt = std::exchange(rolled_for_, 0.0);
+  if (dt <= 0) return;
+  const auto speed = [dt](double way) { return Eigen::Vector3d::Constant(way / (dt * dt)); };
+  slip_.compare(state_.rotation.conjugate() * off / dt, speed(by_lidar), speed(by_wheels), dt);
 }
 
 void MotionFilter::use_attitude() {
@@ -336,11 +376,34 @@ Result<Pose3> MotionFilter::at(std::uint64_t stamp) const {
 }
 
 void MotionFilter::correct(const MotionState& state) {
+  if (!state.P.allFinite() || state.P.diagonal().minCoeff() <= 0 || !state.position.allFinite() ||
+      !state.rotation.coeffs().allFinite() || !state.velocity.allFinite()) {
+    const Pose3 here = base_pose(state_);
+    const std::uint64_t stamp = state_.stamp;
+    start(stamp, here, {0, 0, 0}, false, kSteepest);
+    return widen(kMostUnseen);
+  }
   const Pose3 before = base_pose(state_);
   state_ = state;
   // The poses on the way keep their shape and end at the corrected one.
   const Pose3 correction = base_pose(state_) * before.inverse();
   for (Stamped& each : history_) each.pose = correction * each.pose;
+}
+
+S::Matrix after_registration(const S::Matrix& P, const Eigen::Matrix<double, 6, 6>& information,
+                             bool learn_scale) {
+  // With I = L L^T the cloud measures L^T x with unit variances: Joseph's form with the gain B.
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  const Eigen::SelfAdjointEigenSolver<Matrix6> split(information);
+  const Matrix6 L = split.eigenvectors() * split.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::Matrix<double, S::kSize, 6> PL = P.leftCols<6>() * L;
+  const Matrix6 expected = Matrix6::Identity() + L.transpose() * PL.topRows<6>();
+  Eigen::Matrix<double, S::kSize, 6> B = PL * expected.ldlt().solve(Matrix6::Identity());
+  if (!learn_scale) B.row(S::kS).setZero();
+  S::Matrix A = S::Matrix::Identity();
+  A.leftCols<6>() -= B * L.transpose();
+  const S::Matrix next = A * P * A.transpose() + B * B.transpose();
+  return 0.5 * (next + next.transpose());
 }
 
 }  // namespace adit::perception

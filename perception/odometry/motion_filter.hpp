@@ -9,6 +9,7 @@
 #include "core/result/result.hpp"
 #include "perception/odometry/motion_state.hpp"
 #include "perception/odometry/sample_queue.hpp"
+#include "perception/odometry/slip_watch.hpp"
 
 namespace adit::perception {
 
@@ -67,7 +68,8 @@ class MotionFilter {
   bool advance(std::uint64_t stamp);
   /// T_odom_base on the way, extrapolated for a short time. Errors: out_of_range.
   Result<Pose3> at(std::uint64_t stamp) const;
-  /// Replaces the state by its correction at the same stamp.
+  /// Replaces the state by its correction at the same stamp. One that is no number, or has a covariance that
+  /// is none, is refused: the pose stays, and is known as badly as after a step of the clock.
   void correct(const MotionState& state);
 
   /// Without IMU and wheels: what the body is assumed to keep. In odom, m/s; body axes, rad/s.
@@ -90,6 +92,14 @@ class MotionFilter {
   double free_for() const { return free_for_; }
   /// The body is at rest, by its wheels and its gyro.
   bool at_rest() const { return still_for_ > 0.3; }
+  /// The lidar says that since the last call the wheels alone moved the state wrongly by `off` (odom, m; 0
+  /// along directions that it does not determine). `by_lidar`, `by_wheels`: variances of the two ways, m2.
+  void compare_wheels(const Eigen::Vector3d& off, double by_lidar, double by_wheels);
+  /// The wheels contradict the IMU or the lidar: their speed counts no more than the contradiction allows,
+  /// until both agree for a second.
+  bool wheels_slip() const { return slip_.slipping(); }
+  /// It lasts for longer than half a second.
+  bool wheels_slip_lasts() const { return slip_.lasts(); }
   /// Whether the scale of the wheels may be learned now: the lidar determines the direction of travel.
   void learn_scale(bool learn) { learn_scale_ = learn; }
   const MotionParams& params() const { return params_; }
@@ -109,6 +119,8 @@ class MotionFilter {
   void propagate_covariance();
   /// Whether sensors of motion went on until `stamp`, over a silence of the lidar of any length.
   bool carried_to(std::uint64_t stamp) const;
+  /// Adds what the body may have done within `unseen` (s).
+  void widen(double unseen);
   /// The clock was set; the body moved for `unseen` (s) at most.
   void begin_again(std::uint64_t stamp, double unseen);
   void use_wheels(std::uint64_t from, std::uint64_t to);
@@ -129,10 +141,12 @@ class MotionFilter {
   std::uint64_t attitude_used_{};  ///< Until then the driver's attitude corrected the tilt.
   bool leans_{};                   ///< The driver states roll and pitch; a planar one states zero.
   double still_for_{};             ///< s
-  double slipping_for_{};          ///< s
-  double free_for_{};              ///< s
-  double period_{};                ///< Between the last two stamps of advance(), s.
-  std::uint64_t suspect_{};        ///< A stamp of advance() that was of another clock; 0: none.
+  SlipWatch slip_{};
+  double unseen_for_{};      ///< By wheels alone since the lidar last saw the way, s.
+  double rolled_for_{};      ///< By wheels alone since compare_wheels(), s.
+  double free_for_{};        ///< s
+  double period_{};          ///< Between the last two stamps of advance(), s.
+  std::uint64_t suspect_{};  ///< A stamp of advance() that was of another clock; 0: none.
   int clock_steps_{};
   /// The motion by which the covariance has not been moved yet.
   struct Pending {
@@ -144,5 +158,10 @@ class MotionFilter {
   } pending_{};
   std::deque<Stamped> history_{};
 };
+
+/// The covariance P after a cloud with `information` on the pose (as Registered::information), by a form that
+/// stays positive: (P^-1 + I)^-1. `learn_scale`: also of the wheels' scale.
+MotionState::Matrix after_registration(const MotionState::Matrix& P,
+                                       const Eigen::Matrix<double, 6, 6>& information, bool learn_scale);
 
 }  // namespace adit::perception

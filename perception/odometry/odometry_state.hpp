@@ -46,6 +46,8 @@ struct OdometryState {
   /// After it was lost it began a new map, whose place is not known but for the covariance. It ends by
   /// LidarOdometry::relocalised(), or when clouds fit the map before.
   bool unplaced{};
+  /// The wheels report a motion that lidar or IMU contradict, as of a body that is stuck.
+  bool wheels_slip{};
   std::size_t matched{};  ///< Points that lie on a known plane.
   std::size_t used{};     ///< Points that were compared.
   /// Points of the last cloud that entered the map for which it had no room.

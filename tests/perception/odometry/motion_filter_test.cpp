@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
+#include "core/time/random.hpp"
+
 namespace adit::perception {
 namespace {
 
@@ -151,6 +155,38 @@ TEST(MotionFilter, ItsMemoryIsBounded) {
   }
   EXPECT_FALSE(filter.started());
   EXPECT_TRUE(filter.covers(kBegin + 9'999 * kMillisecond));
+}
+
+TEST(MotionFilter, TheCovarianceStaysPositiveAfterALongBlindStretch) {
+  Random random(1);
+  using Matrix = MotionState::Matrix;
+  for (const double sigma : {31.0, 100.0, 1e4})
+    for (int n = 0; n < 200; ++n) {
+      Matrix mix;
+      for (int k = 0; k < mix.size(); ++k) mix.data()[k] = random.uniform(-1, 1);
+      Eigen::Matrix<double, 6, 6> J;
+      for (int k = 0; k < J.size(); ++k) J.data()[k] = random.uniform(-1, 1);
+      MotionState::Vector open;
+      for (int k = 0; k < open.size(); ++k) open[k] = random.uniform(-1, 1);
+      const Matrix P = 1e-4 * mix * mix.transpose() + sigma * sigma * open * open.transpose();
+      const Matrix next = after_registration(P, 1e6 * J * J.transpose(), true);
+      ASSERT_TRUE(next.allFinite());
+      const Eigen::SelfAdjointEigenSolver<Matrix> solver(next);
+      ASSERT_GT(solver.eigenvalues().minCoeff(), -1e-12 * solver.eigenvalues().maxCoeff())
+          << sigma << " " << n;
+      ASSERT_GT(next.diagonal().minCoeff(), 0);
+    }
+}
+
+TEST(MotionFilter, ACorrectionThatIsNoNumberIsRefused) {
+  MotionFilter filter = started({.has_wheels = false});
+  MotionState state = filter.state();
+  state.P(3, 3) = -1e-3;
+  state.position.x() = 77;
+  filter.correct(state);
+  EXPECT_NEAR(filter.pose().position.x(), 0, 1e-9);
+  EXPECT_GT(filter.state().P.diagonal().minCoeff(), 0);
+  EXPECT_GT(filter.state().P(0, 0), 1);
 }
 
 }  // namespace

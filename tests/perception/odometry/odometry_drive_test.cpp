@@ -33,7 +33,7 @@ DriveSpec round_trip(std::uint64_t seed) {
 struct Outcome {
   double worst{}, end{}, end_yaw{}, worst_tilt{};
   bool honest{true};  ///< No error above 5 sigma + 0.1 m.
-  std::size_t lost{}, poses{};
+  std::size_t lost{}, poses{}, slips{};
   Localisation last{};
 };
 
@@ -56,6 +56,7 @@ Outcome run(const DriveRecording& drive, const Platform& on, bool imu, bool whee
     out.end_yaw = std::abs(wrap_angle(believed.yaw() - truth.yaw()));
     out.honest = out.honest && error <= 5 * step.state.sigma() + 0.1;
     out.lost += step.state.health == Localisation::lost;
+    out.slips += step.state.wheels_slip;
     out.last = step.state.health;
     ++out.poses;
   });
@@ -151,6 +152,31 @@ TEST(OdometryOnADrive, TheHeightStaysOnLevelGround) {
   const auto [worst, standing] = height_errors(1);
   EXPECT_LT(worst, 0.35);
   EXPECT_LT(standing, 0.01);
+}
+
+TEST(OdometryOnADrive, WheelsThatSpinInASmoothTunnelAreNotBelieved) {
+  DriveSpec spec;
+  const std::vector<Box> boxes{{-0.2, 0, -1.7, 1.7, 0, 3},
+                               {70, 70.2, -1.7, 1.7, 0, 3},
+                               {0, 70, -1.7, -1.5, 0, 3},
+                               {0, 70, 1.5, 1.7, 0, 3}};
+  spec.world = std::make_shared<const World>(make_box_world(boxes, 0.0, 3.0).value());
+  spec.platform = config::load_platform("wheeled").value();
+  spec.start = {2, 0, 0};
+  spec.steps = {StandFor{1.5}, DriveTo{{32, 0}, 2.0}, StandFor{32}};
+  spec.lidar.max_range = 15.0;
+  DriveRecording drive = record_drive(spec).value();
+  // For the last 30 s the wheels turn at 0.4 m/s.
+  const std::uint64_t begin = drive.wheels.back().stamp - 30'000'000'000;
+  for (WheelSample& each : drive.wheels)
+    if (each.stamp > begin)
+      each.pose.position +=
+          each.pose.orientation * Eigen::Vector3d(0.4e-9 * static_cast<double>(each.stamp - begin), 0, 0);
+  const Outcome found = run(drive, spec.platform, true, true);
+  EXPECT_TRUE(found.honest) << found.worst;
+  EXPECT_LT(found.worst, 5.0);  // 12 m by the wheels; the IMU alone is known to that after 30 s.
+  EXPECT_GT(found.slips, 250u);
+  EXPECT_EQ(found.lost, 0u);
 }
 
 TEST(OdometryOnADrive, ADoorIntoAnotherRoomIsNoContradiction) {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/time/random.hpp"
-#include "perception/odometry/lidar_odometry.hpp"
+#include "tests/perception/odometry/circling_robot.hpp"
 
 namespace adit::perception {
 namespace {
@@ -124,6 +124,30 @@ TEST(OdometryInput, RandomSamplesNeverGiveAPoseThatIsNotFinite) {
     ASSERT_TRUE(odometry.state().pose.position.allFinite()) << n;
     ASSERT_TRUE(odometry.state().pose.orientation.coeffs().allFinite()) << n;
   }
+}
+
+TEST(OdometryInput, ASampleBeyondTheRangeOfAnImuIsRefused) {
+  CirclingRobot robot;
+  robot.drive(4);
+  const std::uint64_t stamp = robot.stamp(CirclingRobot::imu, {}) + 5'000'000;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  robot.odometry.add(ImuSample{stamp, {0, 0, 0}, {30'000, 0, 0}});
+  robot.odometry.add(ImuSample{stamp + 1, {70, 0, 0}, {0, 0, 9.81}});
+  robot.odometry.add(ImuSample{stamp + 2, {0, 0, 0}, {0, nan, 9.81}});
+  robot.drive(0.3);
+  EXPECT_EQ(robot.odometry.refused_samples(), 3u);
+  EXPECT_LT(robot.error(), 0.05);
+}
+
+TEST(OdometryInput, NoiseOfStandingIsNoWay) {
+  LidarOdometry odometry = clouds_only();
+  Random random(8);
+  for (int n = 0; n < 100; ++n) {
+    odometry.advance(kFirst + static_cast<std::uint64_t>(n) * kPeriod);
+    odometry.update(room({0, 0, 0}, random));
+  }
+  EXPECT_LT(odometry.travelled(), 0.01);
+  EXPECT_LT(odometry.state().sigma(), 0.006);
 }
 
 }  // namespace
