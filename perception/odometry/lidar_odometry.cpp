@@ -14,11 +14,11 @@ using S = MotionState;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kInsertWay = 0.2,
-                 kInsertTurn = 0.05;    ///< Motion after which a cloud enters the map, m, rad.
-constexpr int kSearchPeriod = 10;       ///< Clouds between two comparisons with the map before it was lost.
-constexpr int kFirstClouds = 10;        ///< All of them enter the map.
-constexpr double kLeastWay = 0.02;      ///< A shorter way is noise of the registrations, m.
-constexpr double kLevelRate = 0.003;    ///< How fast the frame is levelled, rad/s.
+                 kInsertTurn = 0.05;  ///< Motion after which a cloud enters the map, m, rad.
+constexpr int kSearchPeriod = 10;     ///< Clouds between two comparisons with the map before it was lost.
+constexpr int kFirstClouds = 10;      ///< All of them enter the map.
+constexpr double kLeastWay = 0.02;    ///< A shorter way is noise of the registrations, m.
+constexpr double kLevelRate = 0.003;  ///< How fast the frame is levelled, rad/s.
 constexpr std::uint64_t kImuPatience = 2'000'000'000;  ///< Wait for the first sample of an IMU, ns.
 
 // Per axis, of the widest ranges that sensors have: 16 g and 2000 degrees/s. The sample is in the body's

@@ -20,11 +20,11 @@ constexpr double kRestSpeed = 0.005, kRestTurn = 0.002;   ///< Standard deviatio
 /// Roll and pitch by the driver's attitude filter: their standard deviation, rad, and the time over which an
 /// error keeps its value, s. Half a degree is what makers of attitude sensors state for a body that moves.
 constexpr double kTiltSigma = 0.0087, kTiltTime = 2.0;
-constexpr double kLeastTilt = 1e-6;     ///< Less is no measurement, rad.
-constexpr double kForgetScale = 200.0;                    ///< Way over which the scale may change, m.
-constexpr double kOpenAcceleration = 0.05;                ///< Gravity of a tilt by 0.3 degrees, m/s2.
-constexpr double kSilentPeriods = 2.5;  ///< Between two sweeps of a slow lidar that is heard.
-constexpr double kSlowestSweeps = 2.0;  ///< Between two sweeps of one clock, s.
+constexpr double kLeastTilt = 1e-6;         ///< Less is no measurement, rad.
+constexpr double kForgetScale = 200.0;      ///< Way over which the scale may change, m.
+constexpr double kOpenAcceleration = 0.05;  ///< Gravity of a tilt by 0.3 degrees, m/s2.
+constexpr double kSilentPeriods = 2.5;      ///< Between two sweeps of a slow lidar that is heard.
+constexpr double kSlowestSweeps = 2.0;      ///< Between two sweeps of one clock, s.
 /// How long the body may have moved while its lidar's clock was set, s: two sweeps at least; without scans
 /// autonomous modes stop after half a second.
 constexpr double kLeastUnseen = 0.5, kMostUnseen = 2.0;

@@ -118,8 +118,9 @@ std::optional<Pose3> PoseCorrection::located(const OdometryReport& report) const
 }
 
 double PoseCorrection::sigma() const {
-  const double since =
-      reported_at_ != 0 && applied_ > reported_at_ ? std::min(kMaxStep, seconds_between(reported_at_, applied_)) : 0.0;
+  const double since = reported_at_ != 0 && applied_ > reported_at_
+                           ? std::min(kMaxStep, seconds_between(reported_at_, applied_))
+                           : 0.0;
   return std::hypot(sigma_, kAlone * alone_) + pending_ + slip_ * since;
 }
 

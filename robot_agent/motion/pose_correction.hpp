@@ -74,14 +74,14 @@ class PoseCorrection {
   std::optional<Pose3> T_odom_local_{};  ///< Nothing: the next report sets it.
   std::uint32_t instance_{}, jumps_{};
   std::uint64_t frame_began_{}, applied_{}, reported_at_{};  ///< Stamps.
-  std::optional<Pose3> T_driver_base_{}, T_odom_base_{};  ///< The newest ones.
+  std::optional<Pose3> T_driver_base_{}, T_odom_base_{};     ///< The newest ones.
   std::optional<Time> heard_{};
   Localisation health_{Localisation::starting};
   double sigma_{}, sigma_before_{};      ///< In m; the latter is of earlier instances.
   double reported_{}, reported_from_{};  ///< The present instance's, now and where sigma counts from, m.
-  double pending_{};                 ///< From apply() to where it should be, m.
-  double slip_{};                    ///< How fast the driver's odometry leaves the own one, m/s.
-  double alone_{};                   ///< Way by the driver's odometry since the last report, m.
+  double pending_{};                     ///< From apply() to where it should be, m.
+  double slip_{};                        ///< How fast the driver's odometry leaves the own one, m/s.
+  double alone_{};                       ///< Way by the driver's odometry since the last report, m.
 };
 
 }  // namespace adit::agent

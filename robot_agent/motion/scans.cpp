@@ -159,8 +159,9 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
   if (!newest || !apart || now() - odometry_heard_ > kOdometryHeard) return std::nullopt;
   // The driver's clock is another one: what it sent last is of about the time of the scan.
   const auto health = state.health == Localisation::ok ? Localisation::weak : state.health;
-  return OdometryReport{history_.newest(), state.pose, state.pose * newest->inverse(), instance_, health,
-                        std::hypot(state.sigma(), platform_.max_speed * kPairedWithin)};
+  return OdometryReport{
+      history_.newest(), state.pose, state.pose * newest->inverse(),
+      instance_,         health,     std::hypot(state.sigma(), platform_.max_speed * kPairedWithin)};
 }
 
 void Scans::report_clock_steps() {
