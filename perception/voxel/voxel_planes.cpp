@@ -41,6 +41,7 @@ std::size_t VoxelPlanes::insert(std::span<const Eigen::Vector3d> points, const E
                                 double travelled) {
   const auto now = static_cast<float>(travelled);
   std::size_t refused = 0;
+  ++cloud_;
   for (int level = 0; level < params_.levels; ++level) {
     FlatHash<Cell>& cells = levels_[static_cast<std::size_t>(level)];
     const float size = edge(level);
@@ -60,7 +61,8 @@ std::size_t VoxelPlanes::insert(std::span<const Eigen::Vector3d> points, const E
         ++without_room;
         continue;
       }
-      if (cell->clouds < 255 && (cell->clouds == 0 || cell->touched != now)) ++cell->clouds;
+      if (cell->clouds < 255 && (cell->clouds == 0 || cell->cloud != cloud_)) ++cell->clouds;
+      cell->cloud = cloud_;
       cell->touched = now;
       if (cell->count >= kMaxPoints) continue;
       add(*cell, (p - at.cast<double>() * static_cast<double>(size)).cast<float>());

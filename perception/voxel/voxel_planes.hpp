@@ -82,6 +82,7 @@ class VoxelPlanes {
     float touched{};  ///< Travelled distance when a point was added, m.
     std::uint32_t count{};
     std::uint16_t fitted{};  ///< Points when the plane was fitted.
+    std::uint16_t cloud{};   ///< Number of the cloud of its newest point, modulo 65536.
     std::uint8_t clouds{};   ///< From how many clouds the points are, at most 255.
     bool plane{}, line{};
   };
@@ -96,6 +97,7 @@ class VoxelPlanes {
   std::optional<PlanePatch> find_in(const Eigen::Vector3d& place, int top) const;
 
   Params params_;
+  std::uint16_t cloud_{};  ///< Number of the cloud that was inserted last.
   std::array<FlatHash<Cell>, kMaxLevels> levels_{};
   std::array<std::size_t, kMaxLevels> sweep_{}, hand_{};
 };

@@ -174,7 +174,7 @@ TEST(OdometryOnADrive, WheelsThatSpinInASmoothTunnelAreNotBelieved) {
           each.pose.orientation * Eigen::Vector3d(0.4e-9 * static_cast<double>(each.stamp - begin), 0, 0);
   const Outcome found = run(drive, spec.platform, true, true);
   EXPECT_TRUE(found.honest) << found.worst;
-  EXPECT_LT(found.worst, 5.0);  // 12 m by the wheels; the IMU alone is known to that after 30 s.
+  EXPECT_LT(found.worst, 8.0);  // 12 m by the wheels; by an IMU that leans by 0.1 degrees 7.7 m.
   EXPECT_GT(found.slips, 250u);
   EXPECT_EQ(found.lost, 0u);
 }
