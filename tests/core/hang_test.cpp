@@ -177,10 +177,10 @@ TEST(LiveHang, a_strand_left_behind_costs_its_thread_and_nothing_else) {
   auto stuck = runtime->strand("stuck");
   const auto other = runtime->strand("other");
   std::promise<void> entered, turned;
-  // Captures nothing of this frame beyond the promise: the thread stays until the process ends.
-  stuck->post([&entered, strand = stuck.get()] {
+  // The thread stays until the process ends, and the strand does not: the task must not touch it.
+  stuck->post([&entered] {
     entered.set_value();
-    hang(*strand);
+    for (;;) ::pause();
   });
   entered.get_future().wait();
   other->post([&] { turned.set_value(); });
