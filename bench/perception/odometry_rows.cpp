@@ -56,9 +56,8 @@ class Locating : public DriveSink {
     std::vector<std::pair<double, double>> heights;  // s, m
     // Both frames are level.
     const Pose3 first = truth_.truth_at(steps_.front().stamp), stated = steps_.front().pose;
-    const Eigen::Quaterniond turn(
-        Eigen::AngleAxisd(wrap_angle(first.yaw() - stated.yaw()), Eigen::Vector3d::UnitZ()));
-    const Pose3 T_world_odom{first.position - turn * stated.position, turn};
+    const Pose3 T_world_odom =
+        Pose3::level(first.planar() * stated.planar().inverse(), first.position.z() - stated.position.z());
     for (const Located& step : steps_) {
       const Pose3 truth = truth_.truth_at(step.stamp), estimate = T_world_odom * step.pose;
       const double seconds = static_cast<double>(step.stamp - kDriveStart) * 1e-9;

@@ -9,10 +9,6 @@
 namespace adit::perception {
 namespace {
 
-// Errors of a registration that its residuals do not show: bias of the lidar, of its mounting and of its
-// times. The simulator's and the drivers' documentation bound them (1 cm, 0.05 degrees); the standard
-// deviation of what lies anywhere within a bound is that bound by the square root of three.
-constexpr double kBiasT = 0.0058, kBiasR = 0.0005;
 constexpr double kFullTurn = 1.5;  ///< A turn by so much also replaces what is in view, rad.
 
 }  // namespace

@@ -15,6 +15,12 @@ class DriftAccount {
  public:
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
+  // Errors of a registration that its residuals do not show: bias of the lidar, of its mounting and of its
+  // times. The simulator's and the drivers' documentation bound them (1 cm, 0.05 degrees); the standard
+  // deviation of what lies anywhere within a bound is that bound by the square root of three.
+  static constexpr double kBiasT = 0.0058;  ///< Of the position, m.
+  static constexpr double kBiasR = 0.0005;  ///< Of the rotation, rad.
+
   /// Adds an error that is known only by its standard deviations: position (odom, m), rotation (odom axes,
   /// rad).
   void raise(const Eigen::Matrix<double, 6, 1>& sigma) { sum_.diagonal() += sigma.cwiseAbs2(); }

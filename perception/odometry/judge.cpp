@@ -23,7 +23,6 @@ constexpr double kMaxInnovation = 30.0;  ///< Squared standard deviations for ea
 constexpr int kFirstMotion = 5;          ///< Clouds in a row that fit, after which the motion is known.
 constexpr double kLeastWindow = 0.05;    ///< m
 constexpr double kMaxFree = 0.5;         ///< Without sensors of motion that the robot should have, s.
-constexpr double kBias = 0.0058;         ///< Of a registration, as in drift.cpp, m.
 constexpr double kCarried = 2.0;         ///< Speed of a body that is carried or slides, m/s.
 constexpr double kSlid = 0.5;            ///< A turn beyond what a registration finds, rad.
 
@@ -100,11 +99,12 @@ void LidarOdometry::compare_wheels(const Registered& found) {
     }
     // The registration went only a part of the way to where the cloud alone would lie.
     const double P = u.dot(prior.P.block<3, 3>(0, 0) * u);
-    const double R = found.localizability.sigma_t[axis] * found.localizability.sigma_t[axis] + kBias * kBias;
+    const double R = found.localizability.sigma_t[axis] * found.localizability.sigma_t[axis] +
+                     DriftAccount::kBiasT * DriftAccount::kBiasT;
     off -= (P + R) / P * u.dot(innovation.head<3>()) * u;
     by_lidar = std::max(by_lidar, R);
     // What is usual of the wheels, not what the slip adds.
-    by_wheels = std::max(by_wheels, filter_.wheels_slip() ? kBias * kBias : P);
+    by_wheels = std::max(by_wheels, filter_.wheels_slip() ? DriftAccount::kBiasT * DriftAccount::kBiasT : P);
   }
   if (seen) filter_.compare_wheels(off, by_lidar, by_wheels);
 }

@@ -19,7 +19,6 @@ class KnownSpace {
   void add(const Eigen::Vector3d& lidar, std::span<const Eigen::Vector3d> points, double travelled);
   /// Forgets voxels that were last seen empty more than 60 m ago; a bounded part in each call.
   void forget(double travelled);
-  void clear() { voxels_.clear(); }
   bool is_empty(const Eigen::Vector3d& place) const;
 
  private:

@@ -50,9 +50,8 @@ PointCloud surfaces_near(std::span<const Keyframe> keyframes, const Pose3& T_odo
 
 Pose3 level_correction(const Pose3& T_odom_guess, const Pose3& T_guess_found) {
   const Pose3 corrected = T_odom_guess * T_guess_found;
-  const Eigen::Quaterniond about_z(
-      Eigen::AngleAxisd(wrap_angle(corrected.yaw() - T_odom_guess.yaw()), Eigen::Vector3d::UnitZ()));
-  return Pose3{corrected.position - about_z * T_odom_guess.position, about_z};
+  return Pose3::level(corrected.planar() * T_odom_guess.planar().inverse(),
+                      corrected.position.z() - T_odom_guess.position.z());
 }
 
 }  // namespace adit::perception

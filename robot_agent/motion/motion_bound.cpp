@@ -8,11 +8,8 @@ namespace adit::agent {
 namespace {
 
 constexpr Duration kLongestTransport = 1s;  // From a sample's stamp to its reception.
-constexpr double kFaster = 1.25;        // A body may exceed its platform's speed by this factor, downhill.
-constexpr double kTurnsFaster = 1.5;    // The same for turns: tracks and legs overshoot more.
-constexpr double kNoise = 0.10;         // Position noise of one pose, m.
-constexpr double kHeadingNoise = 0.15;  // Heading noise, rad.
-constexpr double kHeightNoise = 0.15;   // Height noise, m.
+constexpr double kTurnsFaster = 1.5;        // As kFaster, for turns: tracks and legs overshoot more.
+constexpr double kHeightNoise = 0.15;       // Height noise, m.
 
 /// Returns the longest time between the two measurements that is consistent with receptions and stamps.
 Duration time_between(const OdometrySample& from, const OdometrySample& to) {

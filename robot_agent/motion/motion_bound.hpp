@@ -9,6 +9,10 @@ namespace adit::agent {
 /// odometry started again elsewhere: its driver was restarted, or its estimate was replaced.
 class MotionBound {
  public:
+  static constexpr double kFaster = 1.25;        ///< Downhill a body exceeds its platform's speed by so much.
+  static constexpr double kNoise = 0.10;         ///< Position noise of one pose, m.
+  static constexpr double kHeadingNoise = 0.15;  ///< Heading noise of one pose, rad.
+
   explicit MotionBound(const Platform& platform) : platform_(platform) {}
 
   /// Whether the body can have driven from the first pose to the second. The time between them is the larger

@@ -9,11 +9,9 @@
 namespace adit::agent {
 namespace {
 
-constexpr double kUsualStep = 0.02;     ///< Between two samples of a driver that sends no stamps, s.
-constexpr double kMaxStep = 0.5;        ///< After a longer silence no more is made up for at once, s.
-constexpr double kNoise = 0.1;          ///< Of the way between two samples of a driver, m.
-constexpr double kHeadingNoise = 0.15;  ///< The same of its turn, rad.
-constexpr double kAlone = 0.1;  ///< Standard deviation of a way by the driver's odometry alone, share.
+constexpr double kUsualStep = 0.02;  ///< Between two samples of a driver that sends no stamps, s.
+constexpr double kMaxStep = 0.5;     ///< After a longer silence no more is made up for at once, s.
+constexpr double kAlone = 0.1;       ///< Standard deviation of a way by the driver's odometry alone, share.
 constexpr std::uint64_t kLate = 500'000'000;  ///< A sample that is older than this is of another clock, ns.
 
 bool is_pose(const Pose3& pose) {
@@ -99,8 +97,8 @@ Pose3 PoseCorrection::apply(const Pose3& T_driver_base, std::uint64_t stamp) {
   if (T_driver_base_) alone_ += (T_driver_base.position - T_driver_base_->position).norm();
   T_driver_base_ = T_driver_base;
   const Pose3 from = T_odom_base_.value_or(carried);
-  const bool drives = (carried.position - from.position).norm() <= max_speed_ * dt + kNoise &&
-                      turn_between(from, carried) <= max_turn_ * dt + kHeadingNoise;
+  const bool drives = (carried.position - from.position).norm() <= max_speed_ * dt + MotionBound::kNoise &&
+                      turn_between(from, carried) <= max_turn_ * dt + MotionBound::kHeadingNoise;
   if (drives) {
     T_odom_base_ = towards(from, wanted_ * T_driver_base, max_speed_ * dt, max_turn_ * dt);
     T_odom_driver_ = *T_odom_base_ * T_driver_base.inverse();

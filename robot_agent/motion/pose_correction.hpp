@@ -7,6 +7,7 @@
 #include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/time/time.hpp"
+#include "robot_agent/motion/motion_bound.hpp"
 
 namespace adit::agent {
 
@@ -32,12 +33,12 @@ struct OdometryReport {
 /// continues from the present pose.
 class PoseCorrection {
  public:
-  static constexpr double kFaster = 1.25;   ///< A body may exceed its platform's speeds by this factor.
   static constexpr double kPending = 0.2;   ///< A larger correction that is pending is not `ok`, m.
   static constexpr Duration kSilence = 1s;  ///< After a longer silence the health is `starting`.
 
   explicit PoseCorrection(const Platform& platform)
-      : max_speed_(kFaster * platform.max_speed), max_turn_(kFaster * platform.max_turn) {}
+      : max_speed_(MotionBound::kFaster * platform.max_speed),
+        max_turn_(MotionBound::kFaster * platform.max_turn) {}
 
   /// Continues with a stored correction after a restart. `sigma`: of the pose before it, m.
   void restore(const Pose3& T_odom_driver, double sigma) {

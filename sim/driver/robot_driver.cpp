@@ -12,6 +12,7 @@
 #include "sensor_msgs/msg/BatteryState.h"
 #include "sensor_msgs/msg/PointCloud2.h"
 #include "sim/driver/messages.hpp"
+#include "sim/world/active.hpp"
 
 namespace adit::sim {
 namespace {
@@ -109,11 +110,7 @@ std_msgs::msg::Header RobotDriver::header(Sensor sensor, Time stamp, const std::
   return message_header(active.stampless > 0 ? Time{} : stamp + active.clock, frame);
 }
 
-void RobotDriver::lose_columns(const ColumnLoss& loss, bool begins) {
-  if (begins) return losses_.push_back(loss);
-  const auto found = std::find(losses_.begin(), losses_.end(), loss);
-  if (found != losses_.end()) losses_.erase(found);
-}
+void RobotDriver::lose_columns(const ColumnLoss& loss, bool begins) { change_active(losses_, loss, begins); }
 
 Time RobotDriver::simulated(Duration at) {
   const Time now = strand_.now();

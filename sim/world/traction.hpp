@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <algorithm>
 #include <functional>
 #include <numeric>
 #include <optional>
 #include <vector>
 
 #include "core/geometry/pose.hpp"
+#include "sim/world/active.hpp"
 
 namespace adit::sim {
 
@@ -18,9 +18,9 @@ class Traction {
   void jam(bool begins) { jams_ += begins ? 1 : -1; }
   /// The body is stuck and its wheels turn at `wheels` (body frame, m/s and rad/s), whatever is commanded. Of
   /// several slips the newest determines the wheels.
-  void slip(const Twist2& wheels, bool begins) { change(slips_, wheels, begins); }
+  void slip(const Twist2& wheels, bool begins) { change_active(slips_, wheels, begins); }
   /// The body turns by this share, [0, 1], less than its wheels say.
-  void turn_slip(double share, bool begins) { change(turn_slips_, share, begins); }
+  void turn_slip(double share, bool begins) { change_active(turn_slips_, share, begins); }
 
   /// Whether the body stays where it is.
   bool holds() const { return jams_ > 0 || !slips_.empty(); }
@@ -35,13 +35,6 @@ class Traction {
   }
 
  private:
-  template <class T>
-  static void change(std::vector<T>& active, const T& value, bool begins) {
-    if (begins) return active.push_back(value);
-    const auto found = std::find(active.begin(), active.end(), value);
-    if (found != active.end()) active.erase(found);
-  }
-
   int jams_{};
   std::vector<Twist2> slips_{};
   std::vector<double> turn_slips_{};

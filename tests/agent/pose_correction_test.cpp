@@ -82,7 +82,7 @@ TEST(PoseCorrection, ALargeErrorIsMadeUpForAsFastAsTheBodyMoves) {
   for (int n = 0; n < 150; ++n) {
     drive.stamp += 20 * kMs;
     const Pose3 now = correction.apply(drive.driver(), drive.stamp);
-    ASSERT_LE(jump(now, last), PoseCorrection::kFaster * 2.0 * 0.02 + 1e-9);
+    ASSERT_LE(jump(now, last), MotionBound::kFaster * 2.0 * 0.02 + 1e-9);
     last = now;
   }
   EXPECT_NEAR(last.position.y(), 1.0, 1e-6);
@@ -161,7 +161,7 @@ TEST(PoseCorrection, WheelsOfABodyThatIsStuckDoNotCarryItAway) {
     const StuckRun run = stuck(speed, 0, 20);
     EXPECT_TRUE(run.honest) << speed;
     EXPECT_LT(run.end, 0.25 * speed) << speed;  // What the wheels count until the next report.
-    EXPECT_LE(run.largest_step, PoseCorrection::kFaster * 2.0 * 0.02 + 1e-9);
+    EXPECT_LE(run.largest_step, MotionBound::kFaster * 2.0 * 0.02 + 1e-9);
   }
 }
 
