@@ -103,7 +103,8 @@ UnitParams Agent::Impl::sensors_unit() {
         [&inputs = *context->inputs, &strand](const InputFault& fault) {
           inputs.report(fault, strand.now());
         },
-        context->static_frames->all(), params.perception == PerceptionLevel::off ? 0 : ++context->odometries);
+        context->static_frames->all(), params.perception == PerceptionLevel::off ? 0 : ++context->odometries,
+        params.perception == PerceptionLevel::off ? nullptr : &context->found_place);
   };
   unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
     auto readers = read_sensors(

@@ -65,6 +65,7 @@ struct Agent::Context {
   PlanService planner{"planner", 2};        ///< The services are callable from any thread.
   std::unique_ptr<RouteServices> router{};  ///< Null: this robot has no router.
   ScanService scans{"scan", 4};
+  FoundPlaceService found_place{"found place", 2};
   /// Null with `perception: off`.
   std::unique_ptr<KeyframeStore> keyframes{};
   PlaceCheck place{};
@@ -137,6 +138,12 @@ class Agent::CommandComponent : public Component {
   /// Compares a scan with the stored keyframes.
   void compare_place(const std::shared_ptr<const Scan>& scan);
   void place_compared(const Result<perception::RecognisedPlace>& found);
+  /// Compares a scan of a robot that is lost with all that it saw nearby, once a second.
+  void search_place(const std::shared_ptr<const Scan>& scan, const OdometryReport& report);
+  /// `sigma`: of the guess but for what moved it unseen, m.
+  void place_found(const Result<perception::RecognisedPlace>& found, const Pose3& guess, double sigma);
+  /// Moves the odometry. `correction`: in odom.
+  void correct_odometry(const Pose3& correction, double sigma, double sigma_heading);
   /// Zero and hold until an operator sets the pose.
   void place_unknown(const std::string& why);
   void watch_driver();
@@ -198,7 +205,9 @@ class Agent::CommandComponent : public Component {
   Time started_{};
   std::optional<Time> holder_heard_{};  ///< First heartbeat of the holder since the start.
   std::optional<Time> jump_reported_{};
-  int comparisons_{};  ///< Scans that did not fit the stored keyframes.
+  std::optional<Time> searched_{};  ///< When a lost robot began to search its place last.
+  std::optional<Pose3> found_{};    ///< Correction in odom that one scan has found so far.
+  int comparisons_{};               ///< Scans that did not fit the stored keyframes.
   RivalWatch rivals_;
   std::vector<TopicUse> topics_;             ///< Of the robot domain.
   int disobeyed_{};                          ///< Looks in a row without a reader of the velocities.

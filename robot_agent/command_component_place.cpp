@@ -4,12 +4,14 @@
 #include <limits>
 
 #include "perception/place/recognise.hpp"
+#include "perception/place/relocalise.hpp"
 #include "robot_agent/command_component.hpp"
 
 namespace adit::agent {
 namespace {
 
 constexpr Duration kRecognition = 150ms;  // Duration in rehearsal.
+constexpr Duration kSearch = 400ms;       // The same.
 constexpr Duration kKeyframe = 5ms;       // The same.
 constexpr const char* kUnreadable = "what it saw before cannot be read from its disk";
 constexpr Duration kLookAhead = 1s;  // Between two updates of what stations should get first.
@@ -57,6 +59,13 @@ void Agent::CommandComponent::odometry_jumped() {
 Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
   if (!frames_.initialised())
     return {Reason::no_localisation, "pose: the driver has not sent any odometry yet"};
+  if (localisation(now()) == Localisation::lost && context_.place.known()) {
+    // What it saw before stays where it is; where it lies from here nobody knows.
+    frames_.begin_frame();
+    navigation_.clear();
+    waiting_scan_.reset();
+    correct_odometry({}, 0.0, 0.0);
+  }
   frames_.set_pose(pose);
   correction_.reset_sigma();
   context_.place.confirm();
@@ -113,6 +122,53 @@ void Agent::CommandComponent::place_compared(const Result<perception::Recognised
   }
 }
 
+void Agent::CommandComponent::search_place(const std::shared_ptr<const Scan>& scan,
+                                           const OdometryReport& report) {
+  constexpr Duration kAgain = 1s;
+  if (report.health != Localisation::lost) return found_.reset();
+  if (!context_.place.known() || (searched_ && now() - *searched_ < kAgain)) return;
+  perception::RelocaliseParams search{.moved = report.sigma, .planar = scan->planar};
+  search.noise = std::max(search.noise, params_.platform.lidar().noise);
+  const double sigma = report.sigma_seen;
+  if (search.moved + 3.0 * sigma > perception::kMaxRelocaliseRadius) return;
+  searched_ = now();
+  compute(
+      {.name = "search place", .modelled = kSearch, .deadline = 5s},
+      [scan, keyframes = context_.keyframes->of(frames_.odom_epoch()), sigma, search] {
+        return perception::relocalise(keyframes, scan->points, scan->located, sigma, search);
+      },
+      [this, epoch = frames_.odom_epoch(), jumps = scan->jumps, guess = scan->located,
+       sigma](const Result<perception::RecognisedPlace>& found) {
+        if (epoch == frames_.odom_epoch() && jumps == correction_.jumps()) place_found(found, guess, sigma);
+      });
+}
+
+void Agent::CommandComponent::place_found(const Result<perception::RecognisedPlace>& found,
+                                          const Pose3& guess, double sigma) {
+  constexpr double kSame = 0.3, kSameTurn = 0.1;     // m and rad, as of relocalise()
+  constexpr double kAlike = 0.1, kAlikeTurn = 0.02;  // What align() leaves, m and rad.
+  if (!found || found->match != perception::PlaceMatch::found) return found_.reset();
+  // Two scans must agree: one alone may lie on another place by accident.
+  const auto before = std::exchange(found_, found->correction);
+  const Pose3 at = found->correction * guess;
+  if (!before) return;
+  const Pose3 expected = *before * guess;
+  if ((at.position - expected.position).norm() > kSame ||
+      std::abs(wrap_angle(at.yaw() - expected.yaw())) > kSameTurn)
+    return;
+  found_.reset();
+  if (log().on(LogLevel::info)) log().info("found its place again by what it saw before");
+  correct_odometry(found->correction, std::hypot(sigma, kAlike), kAlikeTurn);
+}
+
+void Agent::CommandComponent::correct_odometry(const Pose3& correction, double sigma, double sigma_heading) {
+  const auto T_odom_local = correction_.T_odom_local();
+  if (!T_odom_local) return;
+  call(context_.found_place,
+       {correction_.instance(), T_odom_local->inverse() * correction * *T_odom_local, sigma, sigma_heading},
+       {.deadline = 1s}, [](const Result<void>&) {});  // One that failed is lost still, and searches again.
+}
+
 void Agent::CommandComponent::place_unknown(const std::string& why) {
   context_.place.refuse();
   frames_.begin_frame();  // What was stored in the odometry frame may be elsewhere now.
@@ -153,6 +209,7 @@ void Agent::CommandComponent::add_waiting_scan() {
   scan->located = located.value_or(scan->body);
   scan->jumps = correction_.jumps();
   if (context_.place.waits() && T_odom_base) compare_place(scan);
+  if (waiting.odometry && located) search_place(scan, *waiting.odometry);
   if (context_.place.known()) add_to_map(scan);
   navigation_.add_scan(std::move(scan), waiting.received, now(), team(now()));
 }

@@ -242,7 +242,10 @@ void LidarOdometry::report() {
   state_.accel_bias = s.accel_bias;
   state_.wheel_scale = s.wheel_scale;
   state_.covariance = drift_.covariance() + now;
-  if (bad_ >= kBadForDoubt) state_.covariance.diagonal() += doubt().cwiseAbs2();
+  if (bad_ >= kBadForDoubt)
+    state_.covariance.diagonal() += doubt().cwiseAbs2();
+  else if (!state_.unplaced)
+    state_.sigma_seen = state_.sigma();
 }
 
 void LidarOdometry::level(double dt) {

@@ -46,6 +46,9 @@ struct OdometryState {
   /// After it was lost it began a new map, whose place is not known but for the covariance. It ends by
   /// LidarOdometry::relocalised(), or when clouds fit the map before.
   bool unplaced{};
+  /// sigma() when the last cloud fitted a map whose place was known, m. What is more of it is how far the
+  /// body can have been moved since.
+  double sigma_seen{};
   /// The wheels report a motion that lidar or IMU contradict, as of a body that is stuck.
   bool wheels_slip{};
   std::size_t matched{};  ///< Points that lie on a known plane.

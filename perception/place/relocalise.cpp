@@ -19,6 +19,8 @@ constexpr int kStep = 2;                   ///< Between poses that are compared,
 constexpr double kTurnStep = 0.045;        ///< The same, rad.
 constexpr float kNear = 0.4f;              ///< Distance from a wall that counts in a comparison, m.
 constexpr float kLevel = 0.9f;             ///< Vertical part of the normal of a floor.
+constexpr int kSquare = 4;                 ///< Poses along an edge of the squares that are bounded, steps.
+constexpr std::size_t kMaxSquares = 4000;  ///< Whose poses are compared, the most promising first.
 constexpr std::size_t kSearchPoints = 200, kMinSearchPoints = 30;  ///< Of the scan, on upright planes.
 constexpr std::size_t kCandidates = 10;                            ///< Poses that are laid onto the planes.
 constexpr double kApart = 0.75, kApartTurn = 0.2;  ///< Candidates differ by at least so much, m, rad.
@@ -52,20 +54,44 @@ class Plan {
           near_[at(x + u, y + v)] = std::max(near_[at(x + u, y + v)], value);
         }
     }
+    bound_ = near_;
+    for (const int step : {1, kSize}) {
+      std::vector<std::uint8_t> row = bound_;
+      for (std::size_t n = 0; n < bound_.size(); ++n)
+        for (int k = 1; k < kSquare; ++k) {
+          const std::size_t other = n + static_cast<std::size_t>(k * kStep * step);
+          if (other < row.size()) bound_[n] = std::max(bound_[n], row[other]);
+        }
+    }
   }
   static int cell(float metres) { return static_cast<int>(std::floor(metres / kCell)); }
   /// Of a cell, -kHalf to kHalf in x and y.
   static std::size_t at(int x, int y) {
     return static_cast<std::size_t>(y + kHalf) * kSize + static_cast<std::size_t>(x + kHalf);
   }
-  std::uint8_t near(std::size_t index) const { return near_[index]; }
+  /// Sum of the points' nearness, of cells moved by some cells.
+  static std::uint32_t sum(const std::vector<std::uint8_t>& plan, const std::vector<std::size_t>& cells,
+                           int x, int y) {
+    const auto shift = static_cast<std::ptrdiff_t>(y) * kSize + x;
+    std::uint32_t total = 0;
+    for (const std::size_t each : cells)
+      total += plan[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(each) + shift)];
+    return total;
+  }
+  std::uint32_t score(const std::vector<std::size_t>& cells, int x, int y) const {
+    return sum(near_, cells, x, y);
+  }
+  /// No pose of the square that begins here has a higher score.
+  std::uint32_t bound(const std::vector<std::size_t>& cells, int x, int y) const {
+    return sum(bound_, cells, x, y);
+  }
 
   static constexpr int kHalf =
-      static_cast<int>((static_cast<double>(Keyframe::kReach) + kMaxRelocaliseRadius + 1.0) / kCell);
+      static_cast<int>((static_cast<double>(Keyframe::kReach) + kMaxRelocaliseRadius + 2.0) / kCell);
   static constexpr int kSize = 2 * kHalf + 1;
 
  private:
-  std::vector<std::uint8_t> near_;
+  std::vector<std::uint8_t> near_, bound_{};  ///< The latter: the highest of kSquare steps in x and y.
 };
 
 struct Candidate {
@@ -77,27 +103,49 @@ struct Candidate {
   }
 };
 
+/// kSquare x kSquare poses of one heading, from a corner on.
+struct Square {
+  int turn{}, x{}, y{};  ///< Steps of heading; cells.
+  std::uint32_t bound{};
+};
+
+std::vector<std::size_t> cells_of(const Points& points, double yaw) {
+  std::vector<std::size_t> cells;
+  const Eigen::Rotation2Df R(static_cast<float>(yaw));
+  for (const Eigen::Vector2f& p : points) {
+    const Eigen::Vector2f q = R * p;
+    cells.push_back(Plan::at(Plan::cell(q.x()), Plan::cell(q.y())));
+  }
+  return cells;
+}
+
 /// Poses at which points lie on the plan's walls, the best first, that differ.
 std::vector<Candidate> search(const Plan& plan, const Points& points, double radius, double max_turn) {
-  const int steps = static_cast<int>(std::ceil(radius / (kStep * kCell) - 1e-9));
+  const int reach = kStep * static_cast<int>(std::ceil(radius / (kStep * kCell) - 1e-9));
   const int turns = static_cast<int>(std::ceil(max_turn / kTurnStep - 1e-9));
-  std::vector<Candidate> all;
-  std::vector<std::size_t> cells;
+  std::vector<Square> squares;
   for (int turn = -turns; turn <= turns; ++turn) {
-    const double yaw = turn * kTurnStep;
-    const Eigen::Rotation2Df R(static_cast<float>(yaw));
-    cells.clear();
-    for (const Eigen::Vector2f& p : points) {
-      const Eigen::Vector2f q = R * p;
-      cells.push_back(Plan::at(Plan::cell(q.x()), Plan::cell(q.y())));
-    }
-    for (int y = -steps; y <= steps; ++y)
-      for (int x = -steps; x <= steps; ++x) {
-        const std::ptrdiff_t shift = static_cast<std::ptrdiff_t>(kStep) * (y * Plan::kSize + x);
-        std::uint32_t score = 0;
-        for (const std::size_t each : cells)
-          score += plan.near(static_cast<std::size_t>(static_cast<std::ptrdiff_t>(each) + shift));
-        all.push_back({kStep * kCell * x, kStep * kCell * y, yaw, score});
+    const auto cells = cells_of(points, turn * kTurnStep);
+    for (int y = -reach; y <= reach; y += kSquare * kStep)
+      for (int x = -reach; x <= reach; x += kSquare * kStep)
+        squares.push_back({turn, x, y, plan.bound(cells, x, y)});
+  }
+  std::stable_sort(squares.begin(), squares.end(),
+                   [](const auto& a, const auto& b) { return a.bound > b.bound; });
+  if (squares.size() > kMaxSquares) squares.resize(kMaxSquares);
+  std::vector<Candidate> all;
+  std::uint32_t highest = 0;
+  for (const Square& square : squares) {
+    if (2 * square.bound < highest) break;
+    const auto cells = cells_of(points, square.turn * kTurnStep);
+    for (int v = 0; v < kSquare; ++v)
+      for (int u = 0; u < kSquare; ++u) {
+        const int x = square.x + u * kStep, y = square.y + v * kStep;
+        if (x > reach || y > reach) continue;
+        const std::uint32_t score = plan.score(cells, x, y);
+        if (2 * score < highest) continue;
+        highest = std::max(highest, score);
+        all.push_back({kCell * x, kCell * y, square.turn * kTurnStep, score});
       }
   }
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
@@ -127,7 +175,8 @@ Result<RecognisedPlace> relocalise(std::span<const Keyframe> keyframes,
                                    std::span<const Eigen::Vector3f> points, const Pose3& guess, double sigma,
                                    const RelocaliseParams& params) {
   const double radius = std::min(kMaxRelocaliseRadius, 3.0 * sigma + params.moved);
-  const PointCloud surfaces = surfaces_near(keyframes, guess, kNearKeyframe + radius, kMaxKeyframes);
+  const PointCloud surfaces =
+      surfaces_near(keyframes, guess, kNearKeyframe + radius, kMaxKeyframes, 2.0 * radius / kMaxKeyframes);
   const std::size_t least = params.planar ? kMinPlanarPoints : kMinPlacePoints;
   if (surfaces.size() < least) return RecognisedPlace{};
   RecognisedPlace place;

@@ -15,13 +15,15 @@ struct RelocaliseParams {
   bool planar{false};                 ///< The scan is of one horizontal ring, see kPlanarHeight.
 };
 
-/// Poses farther from the guess are not searched, m.
-inline constexpr double kMaxRelocaliseRadius = 3.0;
+/// Poses farther from the guess are not searched, m: as far as a robot of 2 m/s may be when the odometry
+/// begins a new map, see LidarOdometry, and 4 m for its error before.
+inline constexpr double kMaxRelocaliseRadius = 20.0;
 
 /// Finds the pose of a robot that is lost among what it saw before.
 ///
 /// Within 3 sigma + `moved` around the guess, at most kMaxRelocaliseRadius, all poses of a grid are compared
-/// on a plan of the upright surfaces (exhaustive correlative scan matching, Olson 2009). The best ones that
+/// on a plan of the upright surfaces (correlative scan matching, Olson 2009; squares of a metre that cannot
+/// hold a good one are left out by an upper bound, as in Cartographer, Hess et al. 2016). The best ones that
 /// differ are laid onto the keyframes' planes by align(). The best of them counts only when the next best
 /// place is clearly worse: a robot between places that look alike stays lost. Pure and deterministic.
 ///

@@ -29,7 +29,7 @@ PointCloud surfaces_of(std::span<const Eigen::Vector3f> points, bool planar) {
 }
 
 PointCloud surfaces_near(std::span<const Keyframe> keyframes, const Pose3& T_odom_guess, double radius,
-                         std::size_t most) {
+                         std::size_t most, double apart) {
   const Pose3 T_guess_odom = T_odom_guess.inverse();
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t n = 0; n < keyframes.size(); ++n) {
@@ -37,9 +37,15 @@ PointCloud surfaces_near(std::span<const Keyframe> keyframes, const Pose3& T_odo
     if (distance <= radius) near.emplace_back(distance, n);
   }
   std::sort(near.begin(), near.end());
-  if (near.size() > most) near.resize(most);
   PointCloud surfaces;
+  std::vector<Eigen::Vector3d> taken;
   for (const auto& [distance, n] : near) {
+    const Eigen::Vector3d& at = keyframes[n].T_odom_base.position;
+    const bool beside = std::any_of(taken.begin(), taken.end(),
+                                    [&](const auto& other) { return (other - at).norm() < apart; });
+    if (beside) continue;
+    if (taken.size() == most) break;
+    taken.push_back(at);
     const Pose3 T_guess_keyframe = T_guess_odom * keyframes[n].T_odom_base;
     add(surfaces, keyframes[n].points,
         (Eigen::Translation3d(T_guess_keyframe.position) * T_guess_keyframe.orientation).cast<float>(),

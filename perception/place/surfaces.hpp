@@ -11,9 +11,10 @@ namespace adit::perception {
 PointCloud surfaces_of(std::span<const Eigen::Vector3f> points, bool planar);
 
 /// The points of the keyframes within `radius` (m) of a pose, in its frame; the nearest keyframes first, at
-/// most `most` of them. Relative to `T_odom_guess`, which may be far from the frame's origin.
+/// most `most` of them, and none within `apart` (m) of another. Relative to `T_odom_guess`, which may be far
+/// from the frame's origin.
 PointCloud surfaces_near(std::span<const Keyframe> keyframes, const Pose3& T_odom_guess, double radius,
-                         std::size_t most);
+                         std::size_t most, double apart = 0.0);
 
 /// From a guess to the pose `T_guess_found` in its frame, odometry frame: a shift and a turn about the
 /// vertical.

@@ -18,7 +18,8 @@ struct OdometryReport {
   Pose3 T_local_driver{};    ///< The driver's odometry in that frame, so that both agree at `stamp`.
   std::uint32_t instance{};  ///< Of the odometry: another one has another frame.
   Localisation health{Localisation::starting};
-  double sigma{};  ///< Standard deviation of the horizontal position since the odometry began, m.
+  double sigma{};       ///< Standard deviation of the horizontal position since the odometry began, m.
+  double sigma_seen{};  ///< See perception::OdometryState::sigma_seen, m.
 };
 
 /// The two poses of a robot in the frame `odom`, by its own odometry and its driver's.
@@ -63,6 +64,10 @@ class PoseCorrection {
   std::optional<Pose3> located(const OdometryReport& report) const;
   /// How often located() jumped: poses before and after lie in one frame, but not one beside the other.
   std::uint32_t jumps() const { return jumps_; }
+
+  /// Frame of the own odometry to odom, and its instance; nothing: see located().
+  std::optional<Pose3> T_odom_local() const { return T_odom_local_; }
+  std::uint32_t instance() const { return instance_; }
 
   const Pose3& T_odom_driver() const { return T_odom_driver_; }
   Localisation health(Time now) const;

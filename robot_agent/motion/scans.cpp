@@ -31,7 +31,8 @@ constexpr double kPairedWithin = 0.2;                // s; between a scan and th
 }  // namespace
 
 Scans::Scans(Executor& strand, Log log, const Platform& platform, const ScanService& output, Report report,
-             const std::vector<StaticFrames::Frame>& frames, std::uint32_t instance)
+             const std::vector<StaticFrames::Frame>& frames, std::uint32_t instance,
+             FoundPlaceService* found_place)
     : Component("sensors", strand, std::move(log), {.beat = 100ms}),
       lidars_(platform.all_lidars()),
       output_(output),
@@ -39,11 +40,23 @@ Scans::Scans(Executor& strand, Log log, const Platform& platform, const ScanServ
       input_(platform),
       platform_(platform),
       instance_(instance),
+      found_place_(found_place),
       waiting_(lidars_.size()) {
   input_.mark_isolated(instance_ > 0);
   // What cannot be used was reported when it came.
   for (const StaticFrames::Frame& frame : frames)
     (void)input_.add_transform(frame.parent, frame.child, frame.T_parent_child);
+}
+
+Result<void> Scans::on_start() {
+  if (found_place_ == nullptr) return {};
+  offer(*found_place_, [this](const FoundPlace& found, const Reply<void>& reply) {
+    if (!odometry_ || found.instance != instance_)
+      return reply(Error{Reason::cancelled, "the odometry began again"});
+    odometry_->relocalised(found.correction, found.sigma, found.sigma_heading);
+    reply({});
+  });
+  return {};
 }
 
 void Scans::take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received) {
@@ -149,19 +162,23 @@ bool Scans::advance_odometry(const perception::Sweep& sweep, const std::string& 
 
 std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
   const perception::OdometryState& state = odometry_->update(scan.points, scan.isolated);
+  // In a map of an unknown place the robot is as lost as without one.
+  const Localisation at = state.unplaced ? Localisation::lost : state.health;
   if (const auto T_driver_base = history_.at(scan.stamp))
-    return OdometryReport{scan.stamp, state.pose,   state.pose * T_driver_base->inverse(),
-                          instance_,  state.health, state.sigma()};
+    return OdometryReport{scan.stamp,      state.pose, state.pose * T_driver_base->inverse(),
+                          instance_,       at,         state.sigma(),
+                          state.sigma_seen};
   const auto newest = history_.at(history_.newest());
   // Otherwise the driver's frame began again, or it is silent.
   const bool apart = perception::seconds_between(history_.newest(), scan.stamp) > kPairedWithin ||
                      perception::seconds_between(scan.stamp, history_.newest()) > kClocksApart;
   if (!newest || !apart || now() - odometry_heard_ > kOdometryHeard) return std::nullopt;
   // The driver's clock is another one: what it sent last is of about the time of the scan.
-  const auto health = state.health == Localisation::ok ? Localisation::weak : state.health;
+  const auto health = at == Localisation::ok ? Localisation::weak : at;
   return OdometryReport{
       history_.newest(), state.pose, state.pose * newest->inverse(),
-      instance_,         health,     std::hypot(state.sigma(), platform_.max_speed * kPairedWithin)};
+      instance_,         health,     std::hypot(state.sigma(), platform_.max_speed * kPairedWithin),
+      state.sigma_seen};
 }
 
 void Scans::report_clock_steps() {

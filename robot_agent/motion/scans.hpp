@@ -45,6 +45,16 @@ struct LidarScan {
 /// Takes scans; offered by the component that uses them.
 using ScanService = Service<LidarScan, void>;
 
+/// The place of a robot that was lost, as it was found by other means.
+struct FoundPlace {
+  std::uint32_t instance{};  ///< Of the odometry.
+  /// From where it believed to be to where it is, in the odometry's own frame; keeps the vertical.
+  Pose3 correction{};
+  double sigma{}, sigma_heading{};  ///< Standard deviations of the corrected pose, m and rad.
+};
+/// Moves the robot's own odometry; offered by Scans. Error: cancelled when it is another instance by now.
+using FoundPlaceService = Service<FoundPlace, void>;
+
 /// Turns what the sensors send into scans (perception/input), on a strand of its own, so that they never
 /// delay the command strand.
 ///
@@ -58,7 +68,8 @@ class Scans : public Component {
   /// own.
   /// `frames`: those that came before.
   Scans(Executor& strand, Log log, const Platform& platform, const ScanService& output, Report report,
-        const std::vector<StaticFrames::Frame>& frames, std::uint32_t instance = 0);
+        const std::vector<StaticFrames::Frame>& frames, std::uint32_t instance = 0,
+        FoundPlaceService* found_place = nullptr);
 
   /// On its strand; nothing when it does not run. `lidar`: index of Platform::all_lidars().
   void take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received);
@@ -68,6 +79,9 @@ class Scans : public Component {
   void take(const tf2_msgs::msg::TFMessage& transforms, Time received);
   /// Two participants send the topic.
   void two_sources(const std::string& topic, const OneSource& source);
+
+ protected:
+  Result<void> on_start() override;
 
  private:
   struct Waiting {
@@ -97,6 +111,7 @@ class Scans : public Component {
   PoseHistory history_{};
   Platform platform_;
   std::uint32_t instance_;
+  FoundPlaceService* found_place_;
   std::optional<perception::LidarOdometry> odometry_{};  ///< Made with the first sweep.
   perception::LidarOdometry::ClockSteps clock_steps_{};  ///< Those that were reported.
   std::vector<std::optional<Waiting>> waiting_;          ///< For odometry as new as the sweep, by lidar.

@@ -102,5 +102,49 @@ TEST(PlaceAfterARestart, IsKnownAgainWhenTheOperatorSetsIt) {
   EXPECT_EQ(run_text(text, "killed.yaml").complaints(), std::vector<std::string>{});
 }
 
+/// A robot whose lidar is covered while its wheels turn, so that it believes to be 2 m away and turned round.
+std::string carried(std::uint64_t seed, const std::string& more_boxes, const std::string& more) {
+  return "seed: " + std::to_string(seed) +
+         "\nworld: {boxes: [[-1, 16, -4, -3.8, 0, 2.5], [-1, 16, 3.8, 4, 0, 2.5], [-1.2, -1, -4, 4, 0, 2.5], "
+         "[15, 15.2, -4, 4, 0, 2.5]" +
+         more_boxes +
+         "], floor: 0, ceiling: 3}\n"
+         "duration: 40\nlink: wifi\nlidar: full\nperception: odometry\n"
+         "robots:\n  - {id: r1, platform: wheeled, pose: [0, 2, 0]}\n"
+         "basestations:\n  - {id: op1, pose: [0, 0]}\n"
+         "script:\n  - {at: 1, by: op1, do: take r1}\n  - {at: 2, by: op1, do: goto r1 6 2}\n"
+         "  - {at: 26, by: op1, do: goto r1 12 2}\n" +
+         more +
+         "faults:\n  - {at: 15, cover: r1, for: 4}\n  - {at: 15, slip: r1, wheels: [-0.8, 0.9], for: 3.5}\n";
+}
+
+TEST(LostRobot, FindsItsPlaceByWhatItSawBefore) {
+  for (std::uint64_t seed = 1; seed <= restart_seeds(); ++seed) {
+    const RunReport report =
+        run_text(carried(seed,
+                         ", [6, 6.4, -1, 1, 0, 2.5], [9, 10, -3.8, -3, 0, 1.5], [1, 3, -3.8, -1, 0, 2.5], "
+                         "[-1, 0, 3, 3.8, 0, 2.5]",
+                         "") +
+                     "expect:\n  - {always: no_collision}\n  - {by: 39, robot: r1, near: [12, 2, 0.6]}\n",
+                 "carried.yaml");
+    EXPECT_EQ(report.complaints(), std::vector<std::string>{}) << "seed " << seed;
+  }
+}
+
+TEST(LostRobot, StandsAmongPlacesThatLookAlikeUntilItsOperatorSaysWhereItIs) {
+  const std::string expect = "expect:\n  - {at: 27, by_operator: op1, refused: localisation_lost}\n";
+  const std::string place =
+      "  - {at: 27.5, by: op1, do: mode r1 hold}\n  - {at: 28, by: op1, do: pose r1 6 2 0}\n  - {at: 29, by: "
+      "op1, do: goto r1 12 2}\n";
+  EXPECT_EQ(
+      run_text(carried(1, "", "") + expect + "  - {at: 39, robot: r1, near: [6, 2, 0.3]}\n", "alike.yaml")
+          .complaints(),
+      std::vector<std::string>{});
+  EXPECT_EQ(
+      run_text(carried(1, "", place) + expect + "  - {by: 39, robot: r1, near: [12, 2, 0.6]}\n", "alike.yaml")
+          .complaints(),
+      std::vector<std::string>{});
+}
+
 }  // namespace
 }  // namespace adit::sim

@@ -27,6 +27,20 @@ TEST(Relocalise, FindsThePlaceMetresAwayAndTurned) {
   }
 }
 
+TEST(Relocalise, FindsThePlaceOfABodyThatWasCarriedFar) {
+  const Pose3 truth = lost().T_odom_base;
+  for (const Pose3& guess : {beside(truth, 11, 4, 2.5), beside(truth, -6, -13, -0.9)}) {
+    const auto found = relocalise(before(), lost().points, guess, 0.1, {.moved = 15.0});
+    ASSERT_TRUE(found.ok()) << found.error().text;
+    ASSERT_EQ(found->match, PlaceMatch::found);
+    EXPECT_LT(((found->correction * guess).position - truth.position).head<2>().norm(), 0.05);
+  }
+  const auto elsewhere = scans({32, 2, 0}, {33.5, 3}, 2);
+  EXPECT_EQ(
+      relocalise(before(), elsewhere[0].points, Pose3::level({16, 2, 0}, 0), 0.1, {.moved = 15.0}).reason(),
+      Reason::not_localised_here);
+}
+
 TEST(Relocalise, RefusesAnotherHall) {
   const auto others = scans({32, 2, 0}, {33.5, 3}, 2);
   for (const Keyframe& elsewhere : others)
