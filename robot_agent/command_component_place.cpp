@@ -195,11 +195,12 @@ bool Agent::CommandComponent::is_ahead(std::uint64_t stamp) const {
 }
 
 void Agent::CommandComponent::add_waiting_scan() {
-  const LidarScan waiting = *std::exchange(waiting_scan_, std::nullopt);
+  LidarScan waiting = *std::exchange(waiting_scan_, std::nullopt);
   if (waiting.odometry) correction_.take(*waiting.odometry, now());
   auto scan = std::make_shared<Scan>();
   scan->points = std::move(*waiting.points);
   scan->planar = waiting.planar;
+  scan->isolated = std::move(waiting.isolated);
   const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
   // Without a common clock the newest pose is the best guess.
   scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();

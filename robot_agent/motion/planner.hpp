@@ -18,6 +18,8 @@ struct Scan {
   Pose3 located{};
   std::uint32_t jumps{};  ///< How often `located` jumped before.
   bool planar{false};     ///< See perception::Scan::planar.
+  /// One for each point, not 0: without a neighbour, as dust, see perception::Scan. Empty: none.
+  std::vector<std::uint8_t> isolated{};
 };
 
 /// The input of one planning cycle.

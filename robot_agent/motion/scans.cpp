@@ -217,7 +217,7 @@ void Scans::pass_on(std::size_t lidar) {
   const auto attitude = report && report->health != Localisation::lost ? std::nullopt : complete.attitude;
   call(output_,
        {std::make_shared<PointCloud>(std::move(complete.points)), complete.stamp, attitude, waiting.received,
-        report, complete.planar},
+        report, complete.planar, std::move(complete.isolated)},
        {.deadline = kScanDeadline}, [](const Result<void>&) {});
 }
 

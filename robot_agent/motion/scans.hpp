@@ -40,7 +40,8 @@ struct LidarScan {
   Time received{};  ///< When the sample arrived, by our clock.
   /// With `perception: odometry` and higher.
   std::optional<OdometryReport> odometry{};
-  bool planar{false};  ///< See perception::Scan::planar.
+  bool planar{false};                    ///< See perception::Scan::planar.
+  std::vector<std::uint8_t> isolated{};  ///< See perception::Scan::isolated.
 };
 /// Takes scans; offered by the component that uses them.
 using ScanService = Service<LidarScan, void>;

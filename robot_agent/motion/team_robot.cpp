@@ -10,6 +10,7 @@ namespace adit::agent {
 namespace {
 
 constexpr double kPoseErrors = 0.3;  // m: errors of both poses.
+constexpr double kTallest = 2.0;     // m: of a robot with its mast, above the ground.
 constexpr double kReach = 20.0;      // m: the route map takes in nothing from farther away.
 constexpr double kOutline = 0.1;     // m: cells of the map around a robot's outline that are its own.
 
@@ -17,6 +18,7 @@ constexpr double kOutline = 0.1;     // m: cells of the map around a robot's out
 struct Box {
   nav::PlanarTransform T_box_body;
   double length{}, width{};  ///< Half of them, with the margin, m.
+  double low{}, high{};      ///< Heights in odom, m.
 };
 
 }  // namespace
@@ -28,7 +30,7 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   for (const TeamRobot& robot : team)
     if ((robot.pose.position() - body.position()).norm() <= kReach)
       boxes.push_back({nav::PlanarTransform(robot.pose.inverse() * body), robot.length / 2 + kPoseErrors,
-                       robot.width / 2 + kPoseErrors});
+                       robot.width / 2 + kPoseErrors, robot.z - kPoseErrors, robot.z + kTallest});
   if (boxes.empty()) return scan;
   auto rest = std::make_shared<Scan>();
   rest->body = scan->body;
@@ -36,13 +38,18 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   rest->jumps = scan->jumps;
   rest->planar = scan->planar;
   rest->points.reserve(scan->points.size());
-  for (const Eigen::Vector3f& point : scan->points) {
+  for (std::size_t n = 0; n < scan->points.size(); ++n) {
+    const Eigen::Vector3f& point = scan->points[n];
     const Eigen::Vector2d place = point.head<2>().cast<double>();
+    const double height = scan->body.position.z() + (scan->body.orientation * point.cast<double>()).z();
     const bool inside = std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
       const Eigen::Vector2d in_box = box.T_box_body * place;
-      return std::fabs(in_box.x()) < box.length && std::fabs(in_box.y()) < box.width;
+      return height > box.low && height < box.high && std::fabs(in_box.x()) < box.length &&
+             std::fabs(in_box.y()) < box.width;
     });
-    if (!inside) rest->points.push_back(point);
+    if (inside) continue;
+    rest->points.push_back(point);
+    if (!scan->isolated.empty()) rest->isolated.push_back(scan->isolated[n]);
   }
   return rest;
 }

@@ -15,9 +15,9 @@ MapStep inserted(const MapJob& job, MapStep step, perception::SubmapGrid& grid, 
       (Eigen::Translation3d(T_submap_base.position) * T_submap_base.orientation).cast<float>();
   std::vector<Eigen::Vector3f> points;
   points.reserve(scan->points.size());
-  for (const Eigen::Vector3f& point : scan->points)
-    if (point.allFinite()) points.push_back(T * point);
-  grid.insert(T * job.origin, points, static_cast<float>(range));
+  for (const Eigen::Vector3f& point : scan->points) points.push_back(T * point);
+  // A new submap is unknown everywhere: one return of dust would be an obstacle in it at once.
+  grid.insert(T * job.origin, points, static_cast<float>(range), scan->isolated);
   const std::uint32_t since = job.known_submap == step.submap ? job.known_revision : 0;
   for (const perception::BlockIndex& index : grid.changed_since(since))
     if (const auto block = grid.coarse(index)) step.blocks.push_back(*block);

@@ -63,6 +63,32 @@ TEST_F(MapKeeperTest, ScansEnterTheMapByMotion) {
   EXPECT_TRUE(scan(0.25, 1)) << "another odometry frame";
 }
 
+TEST_F(MapKeeperTest, DustIsNoObstacleInIt) {
+  auto cloud = std::make_shared<Scan>();
+  for (int n = 0; n < 40; ++n) cloud->points.emplace_back(3.0F, -2.0F + 0.1F * static_cast<float>(n), 0.5F);
+  cloud->isolated.assign(cloud->points.size(), 0);
+  for (std::size_t n = 0; n < cloud->points.size(); n += 4) {
+    cloud->points[n].x() = 1.5F;
+    cloud->isolated[n] = 1;
+  }
+  auto job = std::make_shared<MapJob>();
+  job->scan = cloud;
+  job->origin = {0, 0, 0.5F};
+  std::optional<MapStep> step;
+  service.call(*strand, job, {.deadline = 2s}, [&](const Result<MapStep>& done) { step = done.value(); });
+  run(100ms);
+  ASSERT_TRUE(step);
+  int wall = 0, dust = 0;
+  for (const perception::CoarseBlock& block : step->blocks)
+    for (int z = 0; z < perception::CoarseBlock::kEdge; ++z)
+      for (int y = 0; y < perception::CoarseBlock::kEdge; ++y)
+        for (int x = 0; x < perception::CoarseBlock::kEdge; ++x)
+          if (block.at(x, y, z) == perception::Voxel::occupied)
+            ++(0.8 * block.index.x + 0.2 * x > 2.5 ? wall : dust);
+  EXPECT_GT(wall, 10);
+  EXPECT_EQ(dust, 0);
+}
+
 TEST_F(MapKeeperTest, ALongWayMakesSeveralSubmaps) {
   for (double x = 0; x < 40; x += 0.5) EXPECT_TRUE(scan(x));
   EXPECT_EQ(keeper.submaps(), 3U);

@@ -15,5 +15,22 @@ TEST(TeamRobots, NoLengthOfARobotKeepsTheRouterBusy) {
     set_team(planner, {{"r2", Pose2{1, 0, 0}, 0.0, length, length, 1.0}}, 0.3);
 }
 
+TEST(TeamRobots, OnlyTheReturnsOfTheirBodiesAreTakenOut) {
+  // The body is 0.2 m above the floor and leans by 10 degrees forward; r2 is 3 m ahead of it, a floor lower
+  // r3.
+  auto scan = std::make_shared<Scan>();
+  scan->body.position.z() = 0.2;
+  scan->body.orientation = Eigen::AngleAxisd(0.17, Eigen::Vector3d::UnitY());
+  const Eigen::Vector3d in_odom[]{{3, 0, 0.5}, {3, 0, 2.6}, {3, 0, -0.8}, {5, 0, 0.0}, {3, 2, 0.5}};
+  for (const Eigen::Vector3d& at : in_odom) {
+    scan->points.push_back((scan->body.inverse() * at).cast<float>());
+    scan->isolated.push_back(static_cast<std::uint8_t>(scan->isolated.size()));
+  }
+  const auto rest = without_team(
+      scan, {{"r2", Pose2{3, 0, 0}, 0.0, 1.0, 0.6, 0.0}, {"r3", Pose2{5, 0, 0}, -3.0, 1.0, 0.6, 0.0}});
+  EXPECT_THAT(rest->isolated, testing::ElementsAre(1, 2, 3, 4)) << "ceiling, hole, floor above r3, beside r2";
+  EXPECT_EQ(rest->points.size(), 4U);
+}
+
 }  // namespace
 }  // namespace adit::agent
