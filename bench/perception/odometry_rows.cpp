@@ -9,6 +9,7 @@
 
 #include "bench/nav/calibration.hpp"
 #include "bench/perception/street_row.hpp"
+#include "bench/perception/telemetry_rows.hpp"
 #include "core/config/platform_file.hpp"
 #include "sim/cloud/evaluation.hpp"
 #include "sim/drive/drive_recording.hpp"
@@ -257,13 +258,17 @@ double ate_percent(const Outcome& outcome) {
 int main(int argc, char** argv) {
   CLI::App app{"Lidar-inertial odometry on simulated drives.", "bench_perception"};
   int seeds = 1;
-  std::vector<std::string> rows{"ate", "tunnel", "level", "turns", "stairs", "dense", "dust"};
+  std::vector<std::string> rows{"ate", "tunnel", "level", "turns", "stairs", "dense", "dust", "telemetry"};
   app.add_option("--seeds", seeds, "drives of each row")->capture_default_str()->check(CLI::Range(1, 1000));
-  app.add_option("--rows", rows, "of ate tunnel level turns stairs dense dust")->capture_default_str();
+  app.add_option("--rows", rows, "of ate tunnel level turns stairs dense dust telemetry")
+      ->capture_default_str();
   std::string clouds;
   std::vector<std::string> peers;
   app.add_option("--clouds", clouds, "folder of real clouds for the row of the street");
   app.add_option("--peer", peers, "NAME=FILE.tum: a peer's trajectory on --clouds; repeatable");
+  bench::TelemetryOptions telemetry;
+  app.add_option("--only", telemetry.only, "worlds, robots and faults of the row telemetry");
+  app.add_option("--scenarios", telemetry.scenarios, "folder for the scenarios of that row that fail");
   app.footer("Example: bench_perception --rows tunnel --seeds 20");
   CLI11_PARSE(app, argc, argv);
   const auto wanted = [&](const char* row) { return std::find(rows.begin(), rows.end(), row) != rows.end(); };
@@ -341,6 +346,12 @@ int main(int argc, char** argv) {
                        : "");
       count(result);
     }
+  }
+  if (wanted("telemetry")) {
+    telemetry.seeds = seeds;
+    const auto honest = bench::print_telemetry(telemetry);
+    if (!honest) std::fprintf(stderr, "%s\n", honest.error().text.c_str());
+    report.failed = report.failed || !honest || !*honest;
   }
   if (!clouds.empty())
     if (const auto printed = bench::print_street(clouds, peers); !printed) {
