@@ -10,8 +10,6 @@ namespace {
 /// A state holds the newest odometry of the driver, which is up to 50 ms old (20 Hz) when it is used, and
 /// comes up to 40 ms later when it was overtaken (docs/rehearsal.md): the error is the least since then.
 constexpr Duration kAge = 100ms;
-/// Lidar and robot are up to 1 cm beside what the platform says (docs/rehearsal.md), which no sigma knows.
-constexpr double kMounting = 0.01;
 
 }  // namespace
 
@@ -36,22 +34,23 @@ void StatedPoses::stated(Duration now, const sim::StateSent& state) {
   if (past_.empty() || state.localisation == Localisation::off) return;
   ++states_;
   const bool claims = state.localisation == Localisation::ok || state.localisation == Localisation::weak;
-  if (!claims) {
-    beyond_.add(now, false);
-    lost_.add(now, false);
-    return;
-  }
+  if (!claims && !reference_) return;
   if (!reference_) reference_ = past_.back().pose * state.pose.planar().inverse();
   const Eigen::Vector2d stated = (*reference_ * state.pose.planar()).position();
   double error = (stated - past_.front().pose.position()).norm();
   for (const Past& past : past_) error = std::min(error, (stated - past.pose.position()).norm());
+  const bool beyond = error > 5.0 * state.sigma + 0.1;
+  beyond_.add(now, claims && beyond);
+  silent_.add(now, !claims && beyond);
+  lost_.add(now, state.localisation == Localisation::ok && error > std::max(1.0, 5.0 * state.sigma));
+  if (!claims) return;
   ++claimed_;
-  within_ += error <= 3.0 * std::hypot(state.sigma, kMounting);
+  at_once_ += (stated - past_.back().pose.position()).norm() <= 3.0 * state.sigma;
+  within_ += error <= 3.0 * state.sigma;
+  ratios_.push_back(error / std::max(1e-3, state.sigma));
   squared_ += error * error;
   largest_ = std::max(largest_, error);
   end_ = error;
-  beyond_.add(now, error > 5.0 * state.sigma + 0.1);
-  lost_.add(now, state.localisation == Localisation::ok && error > std::max(1.0, 5.0 * state.sigma));
 }
 
 double StatedPoses::ate() const {

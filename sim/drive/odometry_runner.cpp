@@ -1,28 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/drive/odometry_runner.hpp"
 
-#include "perception/input/deskew.hpp"
-#include "perception/input/scan_input.hpp"
 #include "sim/navtool/cpu_time.hpp"
 
 namespace adit::sim {
 
 OdometryRunner::OdometryRunner(const Platform& platform, const perception::LidarOdometryParams& params,
                                bool moves, OnStep on_step)
-    : lidar_(platform.lidar()),
-      T_base_lidar_(lidar_.mounting.pose()),
+    : lidar_frame_(platform.lidar().frame),
       R_base_imu_(platform.imu.value_or(ImuConfig{}).mounting.pose().orientation),
       moves_(moves),
       on_step_(std::move(on_step)),
-      odometry_(params) {}
+      input_(platform),
+      odometry_(params) {
+  input_.mark_isolated(true);
+}
 
 void OdometryRunner::add(const perception::ImuSample& sample) {
-  if (moves_) odometry_.add({sample.stamp, R_base_imu_ * sample.gyro, R_base_imu_ * sample.accel});
+  if (moves_ && input_.add(sample, {})) {
+    const double scale = input_.imu_in_g() ? perception::kStandardGravity : 1.0;
+    odometry_.add({sample.stamp, R_base_imu_ * sample.gyro, R_base_imu_ * (scale * sample.accel)});
+  }
   work();
 }
 
 void OdometryRunner::add(const perception::BodyMotion& sample) {
-  if (moves_) odometry_.add(sample);
+  if (moves_) {
+    if (last_motion_ && sample.stamp > last_motion_->stamp) {
+      const Pose3 moved = last_motion_->pose.inverse() * sample.pose;
+      const double dt = static_cast<double>(sample.stamp - last_motion_->stamp) * 1e-9;
+      input_.add_odometry(sample.stamp, moved.position / dt, sample.pose.yaw());
+    }
+    last_motion_ = sample;
+    odometry_.add(sample);
+  }
   work();
 }
 
@@ -49,29 +60,15 @@ void OdometryRunner::take() {
   const std::uint64_t end = perception::ScanInput::end_of(sweep);
   const double begin = navtool::cpu_ms();
   const bool located = odometry_.advance(end);
-  if (located) correct(sweep, end);
+  if (located) correct(sweep);
   on_step_({sweep, end, located, odometry_.state(), navtool::cpu_ms() - begin});
 }
 
-void OdometryRunner::correct(const perception::Sweep& sweep, std::uint64_t end) {
-  perception::Deskew deskew = perception::Deskew::none(T_base_lidar_);
-  bool deskewed = false;
-  if (sweep.timed) {
-    const auto pose = [this](std::uint64_t stamp) { return odometry_.at(stamp); };
-    auto over = perception::Deskew::over(sweep.stamp, end, pose, T_base_lidar_);
-    deskewed = over.ok();
-    if (over) deskew = std::move(*over);
-  }
-  const auto low = static_cast<float>(lidar_.min_range), high = static_cast<float>(lidar_.max_range);
-  points_.clear();
-  const std::vector<std::uint8_t>& isolated = isolated_.find(sweep);
-  for (std::size_t n = 0; n < sweep.points.size(); ++n) {
-    const perception::TimedPoint& p = sweep.points[n];
-    if (!isolated.empty() && isolated[n] != 0) continue;
-    const float squared = p.position.squaredNorm();  // Of NaN all comparisons are false.
-    if (squared >= low * low && squared <= high * high) points_.push_back(deskew(p.position, p.time));
-  }
-  odometry_.update(points_, {}, deskewed);
+void OdometryRunner::correct(const perception::Sweep& sweep) {
+  const auto scan =
+      input_.add(sweep, 0, lidar_frame_, [this](std::uint64_t stamp) { return odometry_.at(stamp); });
+  // As in the agent: a sweep that cannot be used corrects nothing.
+  if (scan && *scan) odometry_.update((*scan)->points, (*scan)->isolated, (*scan)->deskewed);
 }
 
 }  // namespace adit::sim

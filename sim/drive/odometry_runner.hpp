@@ -2,16 +2,20 @@
 #pragma once
 #include <deque>
 #include <functional>
+#include <optional>
+#include <string>
 
 #include "core/config/platform.hpp"
-#include "perception/input/isolated_returns.hpp"
+#include "perception/input/scan_input.hpp"
 #include "perception/odometry/lidar_odometry.hpp"
 #include "perception/types/sweep.hpp"
 
 namespace adit::sim {
 
-/// Feeds recorded or simulated sensor data to the odometry: a sweep waits until its sensors of motion cover
-/// it, is deskewed, and corrects the pose.
+/// Feeds recorded or simulated sensor data to the odometry as the agent does: a sweep waits until its sensors
+/// of motion cover it, becomes a scan (perception::ScanInput), and corrects the pose. What the agent adds to
+/// that, frames of /tf_static, several lidars and the pose that telemetry sends, is judged in rehearsals
+/// (bench/perception/telemetry_rows.hpp).
 class OdometryRunner {
  public:
   /// What became of one sweep.
@@ -37,17 +41,16 @@ class OdometryRunner {
  private:
   void work();
   void take();
-  void correct(const perception::Sweep& sweep, std::uint64_t end);
+  void correct(const perception::Sweep& sweep);
 
-  LidarConfig lidar_;
-  Pose3 T_base_lidar_;
+  std::string lidar_frame_;
   Eigen::Quaterniond R_base_imu_;
   bool moves_;
   OnStep on_step_;
-  perception::IsolatedReturns isolated_{};
+  std::optional<perception::BodyMotion> last_motion_{};
+  perception::ScanInput input_;
   perception::LidarOdometry odometry_;
   std::deque<perception::Sweep> waiting_{};
-  PointCloud points_{};
 };
 
 }  // namespace adit::sim

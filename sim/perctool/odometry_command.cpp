@@ -12,13 +12,23 @@
 namespace adit::sim::perctool {
 namespace {
 
+/// Whoever took the clouds has no platform's file: no return is of its body, and its lidar may be at any
+/// height.
+Platform without_body(Platform platform) {
+  platform.drive = Drive::aerial;
+  platform.footprint.clear();
+  platform.length = platform.width = 0.0;
+  return platform;
+}
+
 /// Runs the odometry over recorded data; a line for each sweep.
 class OdometryRun : public SensorSink {
  public:
   OdometryRun(const OdometryOptions& options, const Platform& platform,
               const perception::LidarOdometryParams& params, bool moves)
       : options_(options),
-        runner_(platform, params, moves, [this](const OdometryRunner::Step& step) { take(step); }) {}
+        runner_(without_body(platform), params, moves,
+                [this](const OdometryRunner::Step& step) { take(step); }) {}
 
   void on_imu(const perception::ImuSample& sample) override { runner_.add(sample); }
   void on_wheels(const perception::BodyMotion& sample) override { runner_.add(sample); }
