@@ -60,7 +60,7 @@ Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
   if (!frames_.initialised())
     return {Reason::no_localisation, "pose: the driver has not sent any odometry yet"};
   if (localisation(now()) == Localisation::lost && context_.place.known()) {
-    // What it saw before stays where it is; where it lies from here nobody knows.
+    // What it saw before stays where it is; where it lies from here is unknown.
     frames_.begin_frame();
     navigation_.clear();
     waiting_scan_.reset();

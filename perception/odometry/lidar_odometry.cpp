@@ -138,6 +138,7 @@ const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> poin
     const Pose3 prior{filter_.state().position, filter_.state().rotation};
     const Matrix6 information = filter_.state().P.topLeftCorner<6, 6>().inverse();
     registration_.set_smear(deskewed ? Smear{} : smear());
+    widen_window();
     found = registration_.align(map_, body_points_, prior, information, window_);
     judge(found);
     if (before_ && clouds_ % kSearchPeriod == 0) search_before();
@@ -152,6 +153,15 @@ const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> poin
       log_so3(moved.orientation).norm() > kInsertTurn)
     insert(dense);
   return state_;
+}
+
+void LidarOdometry::widen_window() {
+  const MotionState& now = filter_.state();
+  if (last_stamp_ == 0 || same_clock(now.stamp, last_stamp_)) return;
+  // Three standard deviations of where the other sensors brought a point since the last cloud.
+  const auto P = now.P.diagonal();
+  const double shift = P.segment<2>(S::kP).sum(), turn = P.segment<3>(S::kR).sum() * reach_ * reach_;
+  window_ = std::clamp(3.0 * std::sqrt(shift + turn), window_, kMaxWindow);
 }
 
 Smear LidarOdometry::smear() const {

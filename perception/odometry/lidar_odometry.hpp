@@ -93,6 +93,8 @@ class LidarOdometry {
   bool start(std::uint64_t stamp);
   /// Of a cloud that is not deskewed.
   Smear smear() const;
+  /// After a silence of the lidar: the window is as wide as the pose is uncertain.
+  void widen_window();
   void apply(const Registered& found);
   void judge(const Registered& found);
   /// Compares the way of the wheels since the last cloud with the registered one.

@@ -12,8 +12,7 @@
 namespace adit::sim::perctool {
 namespace {
 
-/// Whoever took the clouds has no platform's file: no return is of its body, and its lidar may be at any
-/// height.
+/// Clouds without a platform: no return is of the body, and the lidar may be at any height.
 Platform without_body(Platform platform) {
   platform.drive = Drive::aerial;
   platform.footprint.clear();
