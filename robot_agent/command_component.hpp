@@ -18,6 +18,7 @@
 #include "robot_agent/findings/finding_source.hpp"
 #include "robot_agent/motion/driver.hpp"
 #include "robot_agent/motion/frames.hpp"
+#include "robot_agent/motion/grip_watch.hpp"
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
 #include "robot_agent/motion/pose_correction.hpp"
@@ -130,6 +131,8 @@ class Agent::CommandComponent : public Component {
   double place_sigma() const;
   /// The route that the robot follows at this time.
   contract::Route followed_route(Time at) const;
+  /// Tells the holder when the wheels slip, and ends an autonomous mode that pushes in vain.
+  void watch_grip(const OdometryReport& report, Time at);
   /// Notifies the holder when the odometry becomes weak or lost, and when it is well again.
   void watch_localisation(Time at);
   StoredFrames stored_place() const;
@@ -198,6 +201,7 @@ class Agent::CommandComponent : public Component {
   Safeguards safeguards_;
   Telemetry telemetry_;
   PoseCorrection correction_;
+  GripWatch grip_{};
   Localisation reported_localisation_{Localisation::starting};
   Time looked_ahead_{};                      ///< When the map's focus was set last.
   Time localisation_since_{};                ///< Since then the odometry has a health that was not reported.

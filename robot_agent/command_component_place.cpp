@@ -211,6 +211,7 @@ void Agent::CommandComponent::add_waiting_scan() {
   scan->jumps = correction_.jumps();
   if (context_.place.waits() && T_odom_base) compare_place(scan);
   if (waiting.odometry && located) search_place(scan, *waiting.odometry);
+  if (waiting.odometry) watch_grip(*waiting.odometry, now());
   if (context_.place.known()) add_to_map(scan);
   navigation_.add_scan(std::move(scan), waiting.received, now(), team(now()));
 }
@@ -283,6 +284,14 @@ Localisation Agent::CommandComponent::localisation(Time at) const {
 double Agent::CommandComponent::place_sigma() const {
   if (context_.place.refused()) return std::numeric_limits<double>::infinity();
   return localises() ? correction_.sigma() : 0.0;
+}
+
+void Agent::CommandComponent::watch_grip(const OdometryReport& report, Time at) {
+  const auto event = grip_.note(report.wheels_slip, report.T_local_base.position, at);
+  if (event == GripWatch::Event::slips) notices_.wheels_slip();
+  if (event != GripWatch::Event::in_vain || !behaviour_.mode().autonomous()) return;
+  behaviour_.hold(Reason::stuck, at);
+  notices_.pushed_in_vain();
 }
 
 void Agent::CommandComponent::watch_localisation(Time at) {

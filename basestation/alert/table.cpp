@@ -88,6 +88,7 @@ constexpr std::array kRows{
     AlertRow{"lidar_silent", know},
     AlertRow{"obstacle_near", know},
     AlertRow{"localisation_weak", know},
+    AlertRow{"wheels_slip", know},
     AlertRow{"battery_warning", know},
     AlertRow{"goal_unseen", know},
     AlertRow{"goal_moved", know},

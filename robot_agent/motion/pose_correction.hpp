@@ -20,6 +20,7 @@ struct OdometryReport {
   Localisation health{Localisation::starting};
   double sigma{};       ///< Standard deviation of the horizontal position since the odometry began, m.
   double sigma_seen{};  ///< See perception::OdometryState::sigma_seen, m.
+  bool wheels_slip{};   ///< See perception::OdometryState.
 };
 
 /// The two poses of a robot in the frame `odom`, by its own odometry and its driver's.

@@ -165,9 +165,14 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
   // In a map of an unknown place the robot is as lost as without one.
   const Localisation at = state.unplaced ? Localisation::lost : state.health;
   if (const auto T_driver_base = history_.at(scan.stamp))
-    return OdometryReport{scan.stamp,      state.pose, state.pose * T_driver_base->inverse(),
-                          instance_,       at,         state.sigma(),
-                          state.sigma_seen};
+    return OdometryReport{scan.stamp,
+                          state.pose,
+                          state.pose * T_driver_base->inverse(),
+                          instance_,
+                          at,
+                          state.sigma(),
+                          state.sigma_seen,
+                          state.wheels_slip};
   const auto newest = history_.at(history_.newest());
   // Otherwise the driver's frame began again, or it is silent.
   const bool apart = perception::seconds_between(history_.newest(), scan.stamp) > kPairedWithin ||
@@ -176,9 +181,9 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
   // The driver's clock is another one: what it sent last is of about the time of the scan.
   const auto health = at == Localisation::ok ? Localisation::weak : at;
   return OdometryReport{
-      history_.newest(), state.pose, state.pose * newest->inverse(),
-      instance_,         health,     std::hypot(state.sigma(), platform_.max_speed * kPairedWithin),
-      state.sigma_seen};
+      history_.newest(), state.pose,       state.pose * newest->inverse(),
+      instance_,         health,           std::hypot(state.sigma(), platform_.max_speed * kPairedWithin),
+      state.sigma_seen,  state.wheels_slip};
 }
 
 void Scans::report_clock_steps() {

@@ -95,6 +95,18 @@ void Notices::localisation(Localisation health, double sigma) const {
               robot_ + " knows its place again, to " + known);
 }
 
+void Notices::wheels_slip() const {
+  to_holder(Severity::warning, "wheels_slip", Reason::none,
+            "the wheels of " + robot_ +
+                " turn and its body does not follow: the ground is loose, or something holds it");
+}
+
+void Notices::pushed_in_vain() const {
+  to_holder(
+      Severity::warning, "stuck", Reason::stuck,
+      robot_ + " pushed for 5 s without moving, and holds: drive it free by hand, or send it another way");
+}
+
 void Notices::driver_lost() const {
   to_holder(Severity::error, "driver_lost", Reason::driver_silent, "the driver of " + robot_ + " is silent");
 }

@@ -41,6 +41,8 @@ class Notices {
   void not_localised_here(const Pose2& guess, const std::string& why) const;
   /// `sigma`: standard deviation of the position, m.
   void localisation(Localisation health, double sigma) const;
+  void wheels_slip() const;
+  void pushed_in_vain() const;
   void driver_lost() const;
   /// Reports a warning. `stops`: the collision monitor stops the robot in its present mode; otherwise it only
   /// slows the robot down.

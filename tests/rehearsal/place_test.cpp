@@ -131,6 +131,16 @@ TEST(LostRobot, FindsItsPlaceByWhatItSawBefore) {
   }
 }
 
+TEST(SpinningWheels, EndAnAutonomousMode) {
+  std::string text = carried(1, "", "  - {at: 28, by: op1, do: goto r1 12 2}\n");
+  text = text.substr(0, text.find("faults:")) +
+         "faults:\n  - {at: 4, slip: r1, wheels: [1, 0], for: 12}\n"
+         "expect:\n  - {by: 6, by_operator: op1, notified: wheels_slip, robot: r1}\n"
+         "  - {at: 12, robot: r1, mode: hold}\n  - {at: 25, robot: r1, mode: hold}\n"
+         "  - {by: 39, robot: r1, near: [12, 2, 0.6]}\n";
+  EXPECT_EQ(run_text(text, "spinning.yaml").complaints(), std::vector<std::string>{});
+}
+
 TEST(LostRobot, StandsAmongPlacesThatLookAlikeUntilItsOperatorSaysWhereItIs) {
   const std::string expect = "expect:\n  - {at: 27, by_operator: op1, refused: localisation_lost}\n";
   const std::string place =
