@@ -131,7 +131,7 @@ class Agent::CommandComponent : public Component {
   double place_sigma() const;
   /// The route that the robot follows at this time.
   contract::Route followed_route(Time at) const;
-  /// Tells the holder when the wheels slip, and ends an autonomous mode that pushes in vain.
+  /// Notifies the holder when the wheels slip, and ends an autonomous mode when the body is stuck.
   void watch_grip(const OdometryReport& report, Time at);
   /// Notifies the holder when the odometry becomes weak or lost, and when it is well again.
   void watch_localisation(Time at);

@@ -14,6 +14,7 @@ constexpr Duration kRecognition = 150ms;  // Duration in rehearsal.
 constexpr Duration kSearch = 400ms;       // The same.
 constexpr Duration kKeyframe = 5ms;       // The same.
 constexpr const char* kUnreadable = "what it saw before cannot be read from its disk";
+constexpr std::uint64_t kLongestInDriver = 500'000'000;  // ns; no driver keeps a scan for longer.
 constexpr Duration kLookAhead = 1s;  // Between two updates of what stations should get first.
 
 /// Of a state of an earlier version: 1 % of the distance from the start, the usual drift of wheels, at least.
@@ -202,14 +203,16 @@ void Agent::CommandComponent::add_waiting_scan() {
   scan->planar = waiting.planar;
   scan->isolated = std::move(waiting.isolated);
   const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
-  // Without a common clock the newest pose is the best guess.
-  scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
+  // Without a common clock the newest pose is the best guess. With another clock one of that stamp is of long
+  // ago.
+  const bool paired = T_odom_base && frames_.newest_stamp() - waiting.stamp <= kLongestInDriver;
+  scan->body = paired ? *T_odom_base : frames_.T_odom_base();
   // The yaw is the odometry's; how the body leans the IMU knows better.
   if (waiting.attitude) scan->body = perception::with_attitude(scan->body, *waiting.attitude);
   const auto located = waiting.odometry ? correction_.located(*waiting.odometry) : std::nullopt;
   scan->located = located.value_or(scan->body);
   scan->jumps = correction_.jumps();
-  if (context_.place.waits() && T_odom_base) compare_place(scan);
+  if (context_.place.waits() && paired) compare_place(scan);
   if (waiting.odometry && located) search_place(scan, *waiting.odometry);
   if (waiting.odometry) watch_grip(*waiting.odometry, now());
   if (context_.place.known()) add_to_map(scan);
@@ -289,9 +292,9 @@ double Agent::CommandComponent::place_sigma() const {
 void Agent::CommandComponent::watch_grip(const OdometryReport& report, Time at) {
   const auto event = grip_.note(report.wheels_slip, report.T_local_base.position, at);
   if (event == GripWatch::Event::slips) notices_.wheels_slip();
-  if (event != GripWatch::Event::in_vain || !behaviour_.mode().autonomous()) return;
+  if (event != GripWatch::Event::stuck || !behaviour_.mode().autonomous()) return;
   behaviour_.hold(Reason::stuck, at);
-  notices_.pushed_in_vain();
+  notices_.stuck();
 }
 
 void Agent::CommandComponent::watch_localisation(Time at) {

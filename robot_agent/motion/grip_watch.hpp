@@ -11,15 +11,15 @@ namespace adit::agent {
 class GripWatch {
  public:
   static constexpr Duration kTold = 1s;    ///< A shorter slip, as over a stone, is not worth a message.
-  static constexpr Duration kInVain = 5s;  ///< Wheels that turn for so long without kWay push in vain.
-  /// The slowest planner drives 0.1 m/s: half of its way in kInVain, m.
+  static constexpr Duration kStands = 5s;  ///< The body stands when it did not move by kWay for so long.
+  /// The slowest planner drives 0.1 m/s: half of its way in kStands, m.
   static constexpr double kWay = 0.25;
   static constexpr Duration kApart = 3s;  ///< What follows sooner is the same slip.
 
   enum class Event {
     none,
-    slips,    ///< The wheels have been slipping for a second.
-    in_vain,  ///< They turn, and the body has stood for kInVain; again after each further kInVain.
+    slips,  ///< The wheels have been slipping for a second.
+    stuck,  ///< They turn, and the body has stood for kStands; again after each further kStands.
   };
 
   /// To be called with each pose of the odometry. `at`: of the body, m.
@@ -35,9 +35,9 @@ class GripWatch {
       stand_at(at, now);
     }
     if ((at - place_).norm() > kWay) stand_at(at, now);
-    if (now - stands_since_ >= kInVain) {
+    if (now - stands_since_ >= kStands) {
       stand_at(at, now);
-      return Event::in_vain;
+      return Event::stuck;
     }
     if (told_ || now - *since_ < kTold) return Event::none;
     told_ = true;

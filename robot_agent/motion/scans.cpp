@@ -21,7 +21,7 @@ namespace {
 constexpr Duration kScanDeadline = 500ms;            // an older scan says nothing of the terrain
 constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the lidar has another clock
 constexpr std::uint64_t kImuWait = 60'000'000;       // ns; a longer gap is bridged by the driver's odometry
-constexpr double kJump = 1.0;                        // m between two samples: another odometry frame
+constexpr Duration kDrivesUnheard = 750ms;           // without odometry, until a robot gets zero
 constexpr int kMaxNotDeskewed = 5;                   // consecutive scans before the operator is warned
 constexpr Duration kFramesCome = 1s;                 // for the frames of /tf_static after the first scan
 constexpr Duration kOdometryHeard = 200ms;           // two samples of the slowest odometry
@@ -39,6 +39,7 @@ Scans::Scans(Executor& strand, Log log, const Platform& platform, const ScanServ
       report_(std::move(report)),
       input_(platform),
       platform_(platform),
+      bound_(platform),
       instance_(instance),
       found_place_(found_place),
       waiting_(lidars_.size()) {
@@ -107,9 +108,13 @@ void Scans::take(const nav_msgs::msg::Odometry& odometry, Time received) {
                   "the odometry on /odom has no stamps: scans are not corrected for motion; its driver must "
                   "set the time of each in the header");
     odometry_heard_ = received;
-    const auto last = history_.at(history_.newest());
     const bool set_back = stamp < history_.newest() && history_.newest() - stamp > 500'000'000;
-    if (set_back || (last && (last->position - at).norm() > kJump)) {
+    const OdometrySample sample{{at, q.normalized()}, stamp, received};
+    const bool late = stamp < history_.newest() && !set_back;
+    const bool began_again =
+        newest_odometry_ && !late && !bound_.reachable(*newest_odometry_, sample, kDrivesUnheard);
+    if (!late) newest_odometry_ = sample;
+    if (set_back || began_again) {
       history_.clear();
       if (odometry_) odometry_->forget_wheels();
     }
@@ -164,7 +169,12 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
   const perception::OdometryState& state = odometry_->update(scan.points, scan.isolated);
   // In a map of an unknown place the robot is as lost as without one.
   const Localisation at = state.unplaced ? Localisation::lost : state.health;
-  if (const auto T_driver_base = history_.at(scan.stamp))
+  const auto newest = history_.at(history_.newest());
+  // Of another clock: a pose of that stamp would be one of long ago.
+  const bool apart = perception::seconds_between(history_.newest(), scan.stamp) > kPairedWithin ||
+                     perception::seconds_between(scan.stamp, history_.newest()) > kClocksApart;
+  const bool heard = now() - odometry_heard_ <= kOdometryHeard;
+  if (const auto T_driver_base = history_.at(scan.stamp); T_driver_base && !(apart && heard))
     return OdometryReport{scan.stamp,
                           state.pose,
                           state.pose * T_driver_base->inverse(),
@@ -173,11 +183,8 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
                           state.sigma(),
                           state.sigma_seen,
                           state.wheels_slip};
-  const auto newest = history_.at(history_.newest());
   // Otherwise the driver's frame began again, or it is silent.
-  const bool apart = perception::seconds_between(history_.newest(), scan.stamp) > kPairedWithin ||
-                     perception::seconds_between(scan.stamp, history_.newest()) > kClocksApart;
-  if (!newest || !apart || now() - odometry_heard_ > kOdometryHeard) return std::nullopt;
+  if (!newest || !apart || !heard) return std::nullopt;
   // The driver's clock is another one: what it sent last is of about the time of the scan.
   const auto health = at == Localisation::ok ? Localisation::weak : at;
   return OdometryReport{

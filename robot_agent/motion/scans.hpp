@@ -13,6 +13,7 @@
 #include "perception/input/scan_input.hpp"
 #include "perception/odometry/lidar_odometry.hpp"
 #include "robot_agent/motion/input_faults.hpp"
+#include "robot_agent/motion/motion_bound.hpp"
 #include "robot_agent/motion/pose_correction.hpp"
 #include "robot_agent/motion/pose_history.hpp"
 #include "robot_agent/motion/static_frames.hpp"
@@ -111,6 +112,8 @@ class Scans : public Component {
   perception::ScanInput input_;
   PoseHistory history_{};
   Platform platform_;
+  MotionBound bound_;
+  std::optional<OdometrySample> newest_odometry_{};  ///< By the driver.
   std::uint32_t instance_;
   FoundPlaceService* found_place_;
   std::optional<perception::LidarOdometry> odometry_{};  ///< Made with the first sweep.

@@ -101,7 +101,7 @@ void Notices::wheels_slip() const {
                 " turn and its body does not follow: the ground is loose, or something holds it");
 }
 
-void Notices::pushed_in_vain() const {
+void Notices::stuck() const {
   to_holder(
       Severity::warning, "stuck", Reason::stuck,
       robot_ + " pushed for 5 s without moving, and holds: drive it free by hand, or send it another way");

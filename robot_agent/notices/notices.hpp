@@ -42,7 +42,7 @@ class Notices {
   /// `sigma`: standard deviation of the position, m.
   void localisation(Localisation health, double sigma) const;
   void wheels_slip() const;
-  void pushed_in_vain() const;
+  void stuck() const;
   void driver_lost() const;
   /// Reports a warning. `stops`: the collision monitor stops the robot in its present mode; otherwise it only
   /// slows the robot down.

@@ -35,11 +35,11 @@ TEST(GripWatch, TellsOnceOfASlipThatLasts) {
   EXPECT_EQ(robot.drive(5, true, 0.5), std::vector{Event::slips});
 }
 
-TEST(GripWatch, WheelsThatTurnWhileTheBodyStandsPushInVain) {
+TEST(GripWatch, WheelsThatTurnWhileTheBodyStandsAreStuck) {
   Drive robot;
   EXPECT_EQ(robot.drive(4.9, true, 0.01), std::vector{Event::slips});
-  EXPECT_EQ(robot.drive(0.5, true, 0.0), std::vector{Event::in_vain});
-  EXPECT_EQ(robot.drive(10.1, true, 0.01), (std::vector{Event::in_vain, Event::in_vain}));
+  EXPECT_EQ(robot.drive(0.5, true, 0.0), std::vector{Event::stuck});
+  EXPECT_EQ(robot.drive(10.1, true, 0.01), (std::vector{Event::stuck, Event::stuck}));
   EXPECT_TRUE(robot.drive(30, false, 0.0).empty()) << "it stands, and its wheels do, too";
 }
 

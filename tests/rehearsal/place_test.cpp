@@ -141,6 +141,23 @@ TEST(SpinningWheels, EndAnAutonomousMode) {
   EXPECT_EQ(run_text(text, "spinning.yaml").complaints(), std::vector<std::string>{});
 }
 
+/// Drives back and forth through a hall with one fault, so that a pose of some seconds ago is metres away.
+std::string drives(const std::string& fault, const std::string& expect) {
+  std::string text = carried(1, ", [6, 6.4, -1, 1, 0, 2.5]", "");
+  text = text.substr(0, text.find("script:")) +
+         "script:\n  - {at: 1, by: op1, do: take r1}\n  - {at: 2, by: op1, do: goto r1 13 2}\n"
+         "  - {at: 14, by: op1, do: goto r1 1 2}\n  - {at: 27, by: op1, do: goto r1 13 -2}\n";
+  return text + "faults:\n  - " + fault + "\nexpect:\n" + expect;
+}
+
+TEST(ClocksOfDrivers, AnOdometryFiveSecondsAheadIsNotTakenForItsPast) {
+  EXPECT_EQ(run_text(drives("{at: 5, driver_clock: r1, jump: 5, sensor: odometry}",
+                            "  - {always: pose_within, m: 0.6}\n"),
+                     "clock.yaml")
+                .complaints(),
+            std::vector<std::string>{});
+}
+
 TEST(LostRobot, StandsAmongPlacesThatLookAlikeUntilItsOperatorSaysWhereItIs) {
   const std::string expect = "expect:\n  - {at: 27, by_operator: op1, refused: localisation_lost}\n";
   const std::string place =
