@@ -12,6 +12,7 @@ namespace {
 constexpr double kUsualStep = 0.02;  ///< Between two samples of a driver that sends no stamps, s.
 constexpr double kMaxStep = 0.5;     ///< After a longer silence no more is made up for at once, s.
 constexpr double kAlone = 0.1;       ///< Standard deviation of a way by the driver's odometry alone, share.
+constexpr double kSlipping = 1.0;    ///< The same while wheels slip: the body may have stood all the while.
 constexpr std::uint64_t kLate = 500'000'000;  ///< A sample that is older than this is of another clock, ns.
 
 bool is_pose(const Pose3& pose) {
@@ -68,7 +69,7 @@ void PoseCorrection::take(const OdometryReport& report, Time now) {
     const Eigen::Quaterniond turn(
         Eigen::AngleAxisd(wrap_angle(here.yaw() - local.yaw()), Eigen::Vector3d::UnitZ()));
     T_odom_local_ = Pose3{here.position - turn * local.position, turn};
-    if (instance_ != 0) sigma_before_ = std::hypot(sigma_, kAlone * alone_);
+    if (instance_ != 0) sigma_before_ = std::hypot(sigma_, alone_);
     instance_ = report.instance;
     reported_from_ = 0.0;
     reported_at_ = 0;
@@ -85,6 +86,7 @@ void PoseCorrection::take(const OdometryReport& report, Time now) {
     slip_ = ((before * *T_driver_base_).position - (wanted_ * *T_driver_base_).position).norm() /
             std::max(kUsualStep, seconds_between(reported_at_, report.stamp));
   reported_at_ = report.stamp;
+  slips_ = report.wheels_slip;
   alone_ = 0.0;
 }
 
@@ -94,7 +96,8 @@ Pose3 PoseCorrection::apply(const Pose3& T_driver_base, std::uint64_t stamp) {
   const bool dated = stamp != 0 && applied_ != 0 && stamp > applied_;
   const double dt = dated ? std::min(kMaxStep, seconds_between(applied_, stamp)) : kUsualStep;
   applied_ = stamp;
-  if (T_driver_base_) alone_ += (T_driver_base.position - T_driver_base_->position).norm();
+  if (T_driver_base_)
+    alone_ += (slips_ ? kSlipping : kAlone) * (T_driver_base.position - T_driver_base_->position).norm();
   T_driver_base_ = T_driver_base;
   const Pose3 from = T_odom_base_.value_or(carried);
   const bool drives = (carried.position - from.position).norm() <= max_speed_ * dt + MotionBound::kNoise &&
@@ -119,7 +122,7 @@ double PoseCorrection::sigma() const {
   const double since = reported_at_ != 0 && applied_ > reported_at_
                            ? std::min(kMaxStep, seconds_between(reported_at_, applied_))
                            : 0.0;
-  return std::hypot(sigma_, kAlone * alone_) + pending_ + slip_ * since;
+  return std::hypot(sigma_, alone_) + pending_ + slip_ * since;
 }
 
 Localisation PoseCorrection::health(Time now) const {

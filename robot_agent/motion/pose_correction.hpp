@@ -88,7 +88,9 @@ class PoseCorrection {
   double reported_{}, reported_from_{};  ///< The present instance's, now and where sigma counts from, m.
   double pending_{};                     ///< From apply() to where it should be, m.
   double slip_{};                        ///< How fast the driver's odometry leaves the own one, m/s.
-  double alone_{};                       ///< Way by the driver's odometry since the last report, m.
+  /// Standard deviation of the way by the driver's odometry alone since the last report, m.
+  double alone_{};
+  bool slips_{};  ///< The wheels slipped at the last report.
 };
 
 }  // namespace adit::agent

@@ -27,6 +27,7 @@ constexpr Duration kFramesCome = 1s;                 // for the frames of /tf_st
 constexpr Duration kOdometryHeard = 200ms;           // two samples of the slowest odometry
 constexpr double kClocksApart = 0.5;                 // s; longer than any delay of a scan in its driver
 constexpr double kPairedWithin = 0.2;                // s; between a scan and the odometry heard with it
+constexpr int kScansApart = 3;                       // consecutive scans; fewer are those of a busy computer
 
 }  // namespace
 
@@ -166,13 +167,12 @@ bool Scans::advance_odometry(const perception::Sweep& sweep, const std::string& 
 }
 
 std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
-  const perception::OdometryState& state = odometry_->update(scan.points, scan.isolated);
+  const perception::OdometryState& state = odometry_->update(scan.points, scan.isolated, scan.deskewed);
   // In a map of an unknown place the robot is as lost as without one.
   const Localisation at = state.unplaced ? Localisation::lost : state.health;
   const auto newest = history_.at(history_.newest());
-  // Of another clock: a pose of that stamp would be one of long ago.
-  const bool apart = perception::seconds_between(history_.newest(), scan.stamp) > kPairedWithin ||
-                     perception::seconds_between(scan.stamp, history_.newest()) > kClocksApart;
+  // A pose of the stamp of another clock would be one of long ago.
+  const bool apart = apart_ >= kScansApart;
   const bool heard = now() - odometry_heard_ <= kOdometryHeard;
   if (const auto T_driver_base = history_.at(scan.stamp); T_driver_base && !(apart && heard))
     return OdometryReport{scan.stamp,
@@ -214,6 +214,7 @@ void Scans::pass_on(std::size_t lidar) {
   const bool located =
       lidar == 0 && waiting.sweep.stamp != 0 && advance_odometry(waiting.sweep, waiting.frame);
   report_clock_steps();
+  if (lidar == 0) compare_clocks(waiting.sweep);
   auto scan = input_.add(waiting.sweep, lidar, waiting.frame, [&](std::uint64_t stamp) {
     return located ? odometry_->at(stamp) : history_.at(stamp);
   });
@@ -233,19 +234,23 @@ void Scans::pass_on(std::size_t lidar) {
        {.deadline = kScanDeadline}, [](const Result<void>&) {});
 }
 
-void Scans::judge_clock(const perception::Sweep& sweep, bool deskewed) {
+void Scans::compare_clocks(const perception::Sweep& sweep) {
   const std::uint64_t end = perception::ScanInput::end_of(sweep), newest = history_.newest();
+  ahead_.reset();
   // Odometry that is not heard any more says nothing about its clock.
-  const bool comparable = newest != 0 && now() - odometry_heard_ < kOdometryHeard;
-  const double ahead =
-      comparable && end != 0 ? static_cast<double>(static_cast<std::int64_t>(end - newest)) * 1e-9 : 0.0;
-  const bool apart = ahead > kPairedWithin || ahead < -kClocksApart;
+  if (newest == 0 || now() - odometry_heard_ >= kOdometryHeard) return;
+  ahead_ = end != 0 ? static_cast<double>(static_cast<std::int64_t>(end - newest)) * 1e-9 : 0.0;
+  apart_ = *ahead_ > kPairedWithin || *ahead_ < -kClocksApart ? apart_ + 1 : 0;
+}
+
+void Scans::judge_clock(const perception::Sweep& sweep, bool deskewed) {
+  const bool stamped = perception::ScanInput::end_of(sweep) != 0, apart = apart_ >= kScansApart;
   // The first sweep begins before the first pose.
-  const bool bad = comparable && (apart || (sweep.timed && !deskewed));
+  const bool bad = ahead_ && (apart || (sweep.timed && !deskewed));
   not_deskewed_ = bad ? not_deskewed_ + 1 : 0;
   if (not_deskewed_ < kMaxNotDeskewed) return;
   char text[200];
-  if (end == 0)
+  if (!stamped)
     std::snprintf(
         text, sizeof text,
         "the scans have no stamps, and are not corrected for motion: the lidar's driver must set the "
@@ -255,8 +260,8 @@ void Scans::judge_clock(const perception::Sweep& sweep, bool deskewed) {
         text, sizeof text,
         "lidar and odometry have different clocks, and %s: the scans are %.1f s %s the odometry; let both "
         "drivers use one clock",
-        deskewed ? "the pose is weak" : "scans are not corrected for motion", std::abs(ahead),
-        ahead > 0 ? "ahead of" : "behind");
+        deskewed ? "the pose is weak" : "scans are not corrected for motion", std::abs(*ahead_),
+        *ahead_ > 0 ? "ahead of" : "behind");
   else
     std::snprintf(text, sizeof text,
                   "the odometry has no poses for the times of the scans, which are not corrected for motion");

@@ -103,6 +103,8 @@ class Scans : public Component {
   void report_clock_steps();
   void refuse(const std::string& topic, const Error& error);
   void warn(const std::string& topic, const char* code, Reason reason, const std::string& text);
+  /// Compares the times of a sweep of the first lidar and of the odometry that was heard with it.
+  void compare_clocks(const perception::Sweep& sweep);
   /// Warns of scans that cannot be corrected for motion.
   void judge_clock(const perception::Sweep& sweep, bool deskewed);
 
@@ -122,6 +124,9 @@ class Scans : public Component {
   bool in_g_reported_{false};
   int not_deskewed_{0};  ///< Consecutive scans that were not corrected for motion, or of another clock.
   Time odometry_heard_{};
+  /// How far the newest sweep ends after the newest odometry, s. Nothing: that is not heard.
+  std::optional<double> ahead_{};
+  int apart_{0};  ///< Consecutive sweeps that are of another time than the odometry that was heard with them.
   std::optional<Time> frame_unknown_{};  ///< When the frame of a message was unknown first.
 };
 

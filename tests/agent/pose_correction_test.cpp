@@ -208,6 +208,25 @@ TEST(PoseCorrection, AWayByTheDriverAloneIsLessCertain) {
   EXPECT_GT(correction.sigma(), 1.0);
 }
 
+// A restart of the odometry while the body is stuck: nothing sees that it stands.
+TEST(PoseCorrection, AWayOfWheelsThatSlippedSaysNothing) {
+  PoseCorrection correction(wheeled());
+  Drive drive;
+  correction.apply(drive.driver(), drive.stamp);
+  OdometryReport slips = drive.report(Pose3{}, 1);
+  slips.wheels_slip = true;
+  correction.take(slips, kNow);
+  const Pose3 from = drive.driver();
+  for (int n = 0; n < 20; ++n) {
+    drive.step();
+    correction.apply(drive.driver(), drive.stamp);
+  }
+  const double way = (drive.driver().position - from.position).norm();
+  EXPECT_GT(correction.sigma(), 0.9 * way);
+  correction.take(drive.report(Pose3{}, 2), kNow);
+  EXPECT_GT(correction.sigma(), 0.9 * way);
+}
+
 /// Drives on by so many metres, with reports whose sigma grows by 0.5 % of the way from `sigma` on.
 void drive_on(PoseCorrection& correction, Drive& drive, double metres, std::uint32_t instance, double sigma) {
   for (double way = 0; way < metres; way += 0.02) {
