@@ -42,8 +42,13 @@ Station::~Station() {
   ending_ = true;
   wake();
   thread_.join();
-  std::unique_lock guard(mutex_);
-  stops_ended_.wait(guard, [this] { return stops_ == 0; });
+  std::list<RunningStop> stops;
+  {
+    const std::lock_guard guard(mutex_);
+    stops.swap(stops_);
+  }
+  // Joined, not counted: a thread that has counted itself out may still hold the mutex.
+  for (RunningStop& stop : stops) stop.thread.join();
 }
 
 std::shared_ptr<const World> Station::world() const {
@@ -132,17 +137,33 @@ void Station::stop(const std::vector<std::string>& robots, Done done) {
   std::vector<std::string> words{"stop"};
   if (robots.empty()) words.push_back("all");
   words.insert(words.end(), robots.begin(), robots.end());
+  join_ended_stops();
+  std::unique_lock guard(mutex_);
+  if (stops_.size() >= kMaxStops) {
+    end(std::move(done), no_answer("too many stops have no answer yet; this was not sent"), guard);
+    return;
+  }
+  RunningStop& stop = stops_.emplace_back();
+  stop.thread = std::thread([this, &stop, line = quoted(words), done = std::move(done)]() mutable {
+    CommandOutcome outcome = run_stop(options(), front_end_, line);
+    std::unique_lock lock(mutex_);
+    end(std::move(done), std::move(outcome), lock);
+    lock.lock();
+    stop.ended = true;
+  });
+}
+
+void Station::join_ended_stops() {
+  std::list<RunningStop> ended;
   {
     const std::lock_guard guard(mutex_);
-    ++stops_;
+    for (auto stop = stops_.begin(); stop != stops_.end();) {
+      const auto next = std::next(stop);
+      if (stop->ended) ended.splice(ended.end(), stops_, stop);
+      stop = next;
+    }
   }
-  std::thread([this, line = quoted(words), done = std::move(done)]() mutable {
-    CommandOutcome outcome = run_stop(options(), front_end_, line);
-    std::unique_lock guard(mutex_);
-    end(std::move(done), std::move(outcome), guard);
-    guard.lock();
-    if (--stops_ == 0) stops_ended_.notify_all();
-  }).detach();
+  for (RunningStop& stop : ended) stop.thread.join();
 }
 
 void Station::want_map(bool wanted) {

@@ -2,10 +2,10 @@
 #pragma once
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -52,6 +52,9 @@ class Station {
   using RequestId = std::int64_t;
   using Done = std::function<void(const CommandOutcome&)>;
   static constexpr std::size_t kMaxChanges = 1024;  ///< Notices and events stored for take(), each.
+  /// Stops that run at the same time: one takes up to 30 s, and a hand presses a key at most eight times a
+  /// second.
+  static constexpr std::size_t kMaxStops = 256;
 
   /// Connects, or starts the station. `front_end`: name under which other front ends see this one.
   static Result<std::unique_ptr<Station>> open(const StationOptions& options, const std::string& front_end);
@@ -80,7 +83,7 @@ class Station {
   void cancel(RequestId request);
   /// Software stop of these robots, or of all if there is none, on a connection of its own: it does not wait
   /// behind other requests. If the station does not begin within 0.3 s, the program `basestation stop` stops
-  /// them without it.
+  /// them without it. Refused while kMaxStops run. The destructor waits for those that run.
   void stop(const std::vector<std::string>& robots, Done done);
 
   /// Whether the map is asked for, once a second.
@@ -93,9 +96,17 @@ class Station {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// A stop under way, in a thread of its own.
+  struct RunningStop {
+    bool ended{};  ///< Nothing but the end of the thread is left.
+    std::thread thread{};
+  };
+
   Station(const StationOptions& options, std::string front_end, Connected connected);
   RequestId ask(std::function<std::int64_t(Connection&)> request, Done done);
   StationOptions options() const;
+  /// Joins the threads of the stops that ended.
+  void join_ended_stops();
   void wake();
   /// Calls the owner unless that is pending. Releases the lock.
   void poke(std::unique_lock<std::mutex>& guard);
@@ -140,8 +151,7 @@ class Station {
   std::map<RequestId, StickVelocity> sticks_{};           ///< The newest of each drive, to be written.
   std::map<RequestId, Done> open_{};
   std::vector<std::pair<Done, CommandOutcome>> ended_{};
-  int stops_{};
-  std::condition_variable stops_ended_{};
+  std::list<RunningStop> stops_{};
 
   std::thread thread_{};
 };

@@ -2,10 +2,14 @@
 // A front end with a loop of its own, and a real station's socket.
 #include "basestation/client/station.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <condition_variable>
+#include <fstream>
 #include <future>
 #include <mutex>
 
@@ -182,6 +186,62 @@ TEST_F(ClientTest, AStopDoesNotWaitForAHungStation) {
   EXPECT_THAT(outcome->text, HasSubstr("stop all"));
   EXPECT_LT(std::chrono::steady_clock::now() - asked, 5s);
   free.set_value();
+}
+
+/// Made in a thread, it holds the end of that thread up until its station is gone, or for a moment.
+struct EndsLate {
+  std::future<void> gone;
+  std::promise<bool>& first;  ///< Whether the thread ended first.
+  ~EndsLate() { first.set_value(gone.wait_for(200ms) == std::future_status::timeout); }
+};
+
+TEST_F(ClientTest, TheThreadOfAStopEndsBeforeItsStation) {
+  end_station();
+  ASSERT_TRUE(owner_->until([&] { return !station_->link().connected; }));
+  owner_.reset();
+  std::promise<void> gone, ends;
+  std::promise<bool> first;
+  // From here on the thread of the stop alone has something to take.
+  station_->on_change([&] {
+    thread_local std::unique_ptr<EndsLate> late;
+    late.reset(new EndsLate{gone.get_future(), first});
+    ends.set_value();
+  });
+  station_->stop({"r1"}, {});
+  ends.get_future().wait();
+  station_.reset();
+  gone.set_value();
+  EXPECT_TRUE(first.get_future().get());
+}
+
+TEST_F(ClientTest, ManyStopsAtOnceAreSentButNotWithoutLimit) {
+  end_station();
+  ASSERT_TRUE(owner_->until([&] { return !station_->link().connected; }));
+  const std::string gate = folder() + "/gate", program = folder() + "/program";
+  const File closed(::open(gate.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600));
+  ASSERT_EQ(::flock(closed.get(), LOCK_EX), 0);
+  std::ofstream(program) << "#!/bin/sh\nexec flock --shared " << gate << " echo sent\n";
+  ASSERT_EQ(::chmod(program.c_str(), 0700), 0);
+  owner_.reset();
+  StationOptions options = options_;
+  options.program = program;
+  start_station();
+  auto other = client::Station::open(options, "other").value();
+  end_station();
+  Owner others(*other);
+  std::size_t sent = 0, refused = 0;
+  const auto count = [&](const CommandOutcome& outcome) {
+    sent += outcome.text == "sent\n";
+    refused += outcome.error.find("not sent") != std::string::npos;
+  };
+  for (std::size_t n = 0; n < client::Station::kMaxStops + 2; ++n) other->stop({"r1"}, count);
+  EXPECT_TRUE(others.until([&] { return refused == 2; }));
+  EXPECT_EQ(sent, 0U);
+  ASSERT_EQ(::flock(closed.get(), LOCK_UN), 0);
+  ASSERT_TRUE(others.until([&] { return sent == client::Station::kMaxStops; }));
+  other->stop({"r1"}, count);
+  ASSERT_TRUE(others.until([&] { return sent + refused == client::Station::kMaxStops + 3; }));
+  EXPECT_EQ(refused, 2U) << "those that ended make room";
 }
 
 TEST_F(ClientTest, TheMapComesWhenItIsWantedAndAgainFromANewStation) {
