@@ -202,6 +202,7 @@ class Agent::CommandComponent : public Component {
   Telemetry telemetry_;
   PoseCorrection correction_;
   GripWatch grip_{};
+  std::uint64_t modes_seen_{};  ///< Behaviour::modes_begun() at the last scan.
   Localisation reported_localisation_{Localisation::starting};
   Time looked_ahead_{};                      ///< When the map's focus was set last.
   Time localisation_since_{};                ///< Since then the odometry has a health that was not reported.

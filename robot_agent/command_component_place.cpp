@@ -290,6 +290,7 @@ double Agent::CommandComponent::place_sigma() const {
 }
 
 void Agent::CommandComponent::watch_grip(const OdometryReport& report, Time at) {
+  if (std::exchange(modes_seen_, behaviour_.modes_begun()) != behaviour_.modes_begun()) grip_.begin_mode();
   const auto event = grip_.note(report.wheels_slip, report.T_local_base.position, at);
   if (event == GripWatch::Event::slips) notices_.wheels_slip();
   if (event != GripWatch::Event::stuck || !behaviour_.mode().autonomous()) return;

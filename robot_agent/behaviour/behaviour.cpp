@@ -157,6 +157,7 @@ Result<void> Behaviour::remove_area(const std::string& name, Time now) {
 }
 
 Result<void> Behaviour::enter(const ModeRow& row, Time now) {
+  if (running_ == &row) ++modes_begun_;  // With another goal, for example.
   change_to(row, now);
   for (const Mode& mode : modes_)
     if (mode.module && &mode.row != &row && mode.row.goal == GoalOnLeaving::cleared) mode.module->clear();
@@ -171,6 +172,7 @@ Result<void> Behaviour::enter(const ModeRow& row, Time now) {
 
 void Behaviour::change_to(const ModeRow& row, Time now) {
   if (running_ == &row) return;
+  ++modes_begun_;
   if (ModeModule* left = module(*running_)) left->leave(now);
   running_ = &row;
 }

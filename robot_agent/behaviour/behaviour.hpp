@@ -62,6 +62,8 @@ class Behaviour : public Requests {
   Result<void> request_explore(const ExploreRequest& request, Time now) override;
   /// Number of accepted mode and goal requests of holders since the start.
   std::uint64_t holder_requests() const { return holder_requests_; }
+  /// How often a mode began since the start; a new request for the one that runs counts, too.
+  std::uint64_t modes_begun() const { return modes_begun_; }
   Result<void> set_pose(const Pose2& pose, Time now) override;
   Result<void> add_area(const nav::Area& area, Time now) override;
   Result<void> remove_area(const std::string& name, Time now) override;
@@ -150,6 +152,7 @@ class Behaviour : public Requests {
   Time idle_since_{};
   bool idle_reported_{}, begun_{};
   std::uint64_t holder_requests_{};
+  std::uint64_t modes_begun_{};
 };
 
 }  // namespace adit::agent

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/motion/grip_watch.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace adit::agent {
 namespace {
@@ -41,6 +41,37 @@ TEST(GripWatch, WheelsThatTurnWhileTheBodyStandsAreStuck) {
   EXPECT_EQ(robot.drive(0.5, true, 0.0), std::vector{Event::stuck});
   EXPECT_EQ(robot.drive(10.1, true, 0.01), (std::vector{Event::stuck, Event::stuck}));
   EXPECT_TRUE(robot.drive(30, false, 0.0).empty()) << "it stands, and its wheels do, too";
+}
+
+TEST(GripWatch, OnlyTheTimeInWhichItSlipsCounts) {
+  Drive robot;
+  for (int n = 0; n < 3; ++n) {
+    EXPECT_TRUE(robot.drive(0.3, true, 0.0).empty());
+    EXPECT_TRUE(robot.drive(2, false, 0.0).empty());
+  }
+  EXPECT_EQ(robot.drive(3, true, 0.0), std::vector{Event::slips});
+  EXPECT_TRUE(robot.drive(2.5, false, 0.0).empty());
+  EXPECT_TRUE(robot.drive(1, true, 0.0).empty()) << "4.5 s so far";
+  EXPECT_EQ(robot.drive(1, true, 0.0), std::vector{Event::stuck});
+}
+
+TEST(GripWatch, AGapBetweenTwoScansCountsAsThreeScansAtMost) {
+  Drive robot;
+  std::vector<Event> events;
+  for (int n = 0; n < 16; ++n) {
+    robot.now += 2s;
+    events.push_back(robot.watch.note(true, robot.at, robot.now));
+  }
+  EXPECT_THAT(events, testing::Each(testing::AnyOf(Event::none, Event::slips))) << "15 gaps of 0.3 s";
+  EXPECT_THAT(events, testing::Contains(Event::slips).Times(1));
+}
+
+TEST(GripWatch, WhatSlippedBeforeAModeBeganDoesNotCountAgainstIt) {
+  Drive robot;
+  EXPECT_EQ(robot.drive(4.5, true, 0.0), std::vector{Event::slips});
+  robot.watch.begin_mode();
+  EXPECT_TRUE(robot.drive(4.5, true, 0.0).empty()) << "the same slip";
+  EXPECT_EQ(robot.drive(1, true, 0.0), std::vector{Event::stuck});
 }
 
 }  // namespace

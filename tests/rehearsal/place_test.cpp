@@ -141,6 +141,16 @@ TEST(SpinningWheels, EndAnAutonomousMode) {
   EXPECT_EQ(run_text(text, "spinning.yaml").complaints(), std::vector<std::string>{});
 }
 
+TEST(SpinningWheels, BeforeAModeDoNotEndIt) {
+  std::string text = carried(1, "", "  - {at: 9, by: op1, do: goto r1 12 2}\n");
+  text = text.substr(0, text.find("faults:")) +
+         "faults:\n  - {at: 4, slip: r1, wheels: [1, 0], for: 9}\n"
+         "expect:\n  - {at: 8.5, robot: r1, mode: manual}\n  - {at: 12.5, robot: r1, mode: waypoint}\n"
+         "  - {by: 39, robot: r1, near: [12, 2, 0.6]}\n";
+  text.replace(text.find("goto r1 6 2"), 11, "drive r1 0.3 0 0 --for 6");
+  EXPECT_EQ(run_text(text, "spinning.yaml").complaints(), std::vector<std::string>{});
+}
+
 /// Drives back and forth through a hall with one fault, so that a pose of some seconds ago is metres away.
 std::string drives(const std::string& fault, const std::string& expect) {
   std::string text = carried(1, ", [6, 6.4, -1, 1, 0, 2.5]", "");
