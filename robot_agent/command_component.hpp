@@ -70,7 +70,8 @@ struct Agent::Context {
   /// Null with `perception: off`.
   std::unique_ptr<KeyframeStore> keyframes{};
   PlaceCheck place{};
-  std::uint32_t odometries{};  ///< Instances of the odometry so far; by the sensors component only.
+  PoseCorrection::Account odometry{};  ///< As of the last report.
+  std::uint32_t odometries{};          ///< Instances of the odometry so far; by the sensors component only.
   FrameServices frames{};
   std::unique_ptr<MapKeeper> map{};          ///< Null: this robot makes no map.
   std::unique_ptr<Carrier> carrier{};        ///< Null: this robot carries no maps.
@@ -142,7 +143,7 @@ class Agent::CommandComponent : public Component {
   void compare_place(const std::shared_ptr<const Scan>& scan);
   void place_compared(const Result<perception::RecognisedPlace>& found);
   /// Compares a scan of a robot that is lost with all that it saw nearby, once a second.
-  void search_place(const std::shared_ptr<const Scan>& scan, const OdometryReport& report);
+  void search_place(const std::shared_ptr<const Scan>& scan);
   /// `sigma`: of the guess but for what moved it unseen, m.
   void place_found(const Result<perception::RecognisedPlace>& found, const Pose3& guess, double sigma);
   /// Moves the odometry. `correction`: in odom.

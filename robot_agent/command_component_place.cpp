@@ -69,6 +69,7 @@ Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
   }
   frames_.set_pose(pose);
   correction_.reset_sigma();
+  context_.odometry = correction_.account();
   context_.place.confirm();
   keep();  // As in correct_map().
   return {};
@@ -77,7 +78,7 @@ Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
 void Agent::CommandComponent::restore_place(const StoredFrames& stored) {
   frames_.restore(stored);
   if (!localises()) return;
-  correction_.restore(stored.T_odom_driver, sigma_of(stored));
+  correction_.restore(stored.T_odom_driver, sigma_of(stored), context_.odometry);
   if (!stored.recognised)
     context_.place.refuse();
   else if (context_.place.pending() || (context_.instances == 1 && stored.newest))
@@ -123,14 +124,13 @@ void Agent::CommandComponent::place_compared(const Result<perception::Recognised
   }
 }
 
-void Agent::CommandComponent::search_place(const std::shared_ptr<const Scan>& scan,
-                                           const OdometryReport& report) {
+void Agent::CommandComponent::search_place(const std::shared_ptr<const Scan>& scan) {
   constexpr Duration kAgain = 1s;
-  if (report.health != Localisation::lost) return found_.reset();
+  if (!correction_.lost()) return found_.reset();
   if (!context_.place.known() || (searched_ && now() - *searched_ < kAgain)) return;
-  perception::RelocaliseParams search{.moved = report.sigma, .planar = scan->planar};
+  perception::RelocaliseParams search{.moved = correction_.moved(), .planar = scan->planar};
   search.noise = std::max(search.noise, params_.platform.lidar().noise);
-  const double sigma = report.sigma_seen;
+  const double sigma = correction_.sigma_seen();
   if (search.moved + 3.0 * sigma > perception::kMaxRelocaliseRadius) return;
   searched_ = now();
   compute(
@@ -197,7 +197,10 @@ bool Agent::CommandComponent::is_ahead(std::uint64_t stamp) const {
 
 void Agent::CommandComponent::add_waiting_scan() {
   LidarScan waiting = *std::exchange(waiting_scan_, std::nullopt);
-  if (waiting.odometry) correction_.take(*waiting.odometry, now());
+  if (waiting.odometry) {
+    correction_.take(*waiting.odometry, now());
+    context_.odometry = correction_.account();
+  }
   auto scan = std::make_shared<Scan>();
   scan->points = std::move(*waiting.points);
   scan->planar = waiting.planar;
@@ -213,7 +216,7 @@ void Agent::CommandComponent::add_waiting_scan() {
   scan->located = located.value_or(scan->body);
   scan->jumps = correction_.jumps();
   if (context_.place.waits() && paired) compare_place(scan);
-  if (waiting.odometry && located) search_place(scan, *waiting.odometry);
+  if (waiting.odometry && located) search_place(scan);
   if (waiting.odometry) watch_grip(*waiting.odometry, now());
   if (context_.place.known()) add_to_map(scan);
   navigation_.add_scan(std::move(scan), waiting.received, now(), team(now()));

@@ -186,6 +186,7 @@ void LidarOdometry::relocalised(const Pose3& correction, double sigma, double si
   drift_.raise(known);
   before_.reset();
   state_.unplaced = false;
+  ++state_.relocalised;
   // The map lies where the body was believed to be.
   if (state_.health == Localisation::lost) {
     begin_map();

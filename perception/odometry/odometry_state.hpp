@@ -49,6 +49,7 @@ struct OdometryState {
   /// sigma() when the last cloud fitted a map whose place was known, m. What is more of it is how far the
   /// body can have been moved since.
   double sigma_seen{};
+  std::uint32_t relocalised{};  ///< Calls of LidarOdometry::relocalised() so far.
   /// The wheels report a motion that lidar or IMU contradict, as of a body that is stuck.
   bool wheels_slip{};
   std::size_t matched{};  ///< Points that lie on a known plane.

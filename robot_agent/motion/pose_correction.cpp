@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "perception/odometry/so3.hpp"
 
@@ -18,6 +19,8 @@ constexpr std::uint64_t kLate = 500'000'000;  ///< A sample that is older than t
 bool is_pose(const Pose3& pose) {
   return pose.position.allFinite() && std::fabs(pose.orientation.norm() - 1.0) < 1e-3;
 }
+
+double square(double value) { return value * value; }
 
 double turn_between(const Pose3& a, const Pose3& b) {
   return perception::log_so3(a.orientation.conjugate() * b.orientation).norm();
@@ -57,30 +60,28 @@ void PoseCorrection::shift(const Pose3& correction) {
 
 void PoseCorrection::take(const OdometryReport& report, Time now) {
   if (!is_pose(report.T_local_driver) || !is_pose(report.T_local_base) || !std::isfinite(report.sigma) ||
-      report.stamp < frame_began_)
+      !std::isfinite(report.sigma_seen) || report.stamp < frame_began_)
     return;
   heard_ = now;
-  const bool was_lost = health_ == Localisation::lost;
   health_ = report.health;
   if (report.health == Localisation::starting || !T_driver_base_) return;
-  if (was_lost != (health_ == Localisation::lost)) ++jumps_;
-  if (!T_odom_local_ || report.instance != instance_) {
-    const Pose3 here = wanted_ * *T_driver_base_, local = report.T_local_driver * *T_driver_base_;
-    const Eigen::Quaterniond turn(
-        Eigen::AngleAxisd(wrap_angle(here.yaw() - local.yaw()), Eigen::Vector3d::UnitZ()));
-    T_odom_local_ = Pose3{here.position - turn * local.position, turn};
-    if (instance_ != 0) sigma_before_ = std::hypot(sigma_, alone_);
-    instance_ = report.instance;
-    reported_from_ = 0.0;
-    reported_at_ = 0;
-    ++jumps_;
-  }
+  if (!T_odom_local_ || report.instance != account_.instance) begin(report);
+  if (report.relocalised != std::exchange(account_.relocalised, report.relocalised) &&
+      std::exchange(account_.unplaced, false))
+    account_.before = account_.seen_before;
+  if (account_.unplaced) health_ = Localisation::lost;
+  const bool lost = health_ == Localisation::lost;
+  if (lost != std::exchange(account_.lost, lost)) ++jumps_;
   const Pose3 before = wanted_;
   wanted_ = *T_odom_local_ * report.T_local_driver;
   reported_ = report.sigma;
   // It falls where the lidar sees again what it had lost; what grows from there on counts.
-  reported_from_ = std::min(reported_from_, reported_);
-  sigma_ = std::sqrt(sigma_before_ * sigma_before_ + reported_ * reported_ - reported_from_ * reported_from_);
+  account_.from = std::min(account_.from, reported_);
+  const auto since_start = [&](double sigma) {
+    return std::sqrt(square(account_.before) + std::max(0.0, square(sigma) - square(account_.from)));
+  };
+  sigma_ = since_start(reported_);
+  account_.seen = account_.unplaced ? account_.seen_before : lost ? since_start(report.sigma_seen) : sigma_;
   slip_ = 0.0;
   if (reported_at_ != 0 && report.stamp > reported_at_)
     slip_ = ((before * *T_driver_base_).position - (wanted_ * *T_driver_base_).position).norm() /
@@ -88,6 +89,28 @@ void PoseCorrection::take(const OdometryReport& report, Time now) {
   reported_at_ = report.stamp;
   slips_ = report.wheels_slip;
   alone_ = 0.0;
+}
+
+void PoseCorrection::begin(const OdometryReport& report) {
+  const Pose3 here = wanted_ * *T_driver_base_, local = report.T_local_driver * *T_driver_base_;
+  const Eigen::Quaterniond turn(
+      Eigen::AngleAxisd(wrap_angle(here.yaw() - local.yaw()), Eigen::Vector3d::UnitZ()));
+  T_odom_local_ = Pose3{here.position - turn * local.position, turn};
+  const double alone = alone_;
+  if (account_.instance == 0) {
+    account_.from = 0.0;
+  } else if (report.instance == account_.instance) {
+    account_.before = std::hypot(account_.before, alone);
+  } else {
+    account_.unplaced = account_.lost;
+    account_.seen_before = account_.lost ? account_.seen : std::hypot(sigma_, alone);
+    account_.before = std::hypot(sigma_, alone);
+    account_.from = 0.0;
+  }
+  if (report.instance != account_.instance) account_.relocalised = report.relocalised;
+  account_.instance = report.instance;
+  reported_at_ = 0;
+  ++jumps_;
 }
 
 Pose3 PoseCorrection::apply(const Pose3& T_driver_base, std::uint64_t stamp) {
@@ -114,8 +137,12 @@ Pose3 PoseCorrection::apply(const Pose3& T_driver_base, std::uint64_t stamp) {
 }
 
 std::optional<Pose3> PoseCorrection::located(const OdometryReport& report) const {
-  if (!T_odom_local_ || report.instance != instance_) return std::nullopt;
+  if (!T_odom_local_ || report.instance != account_.instance) return std::nullopt;
   return *T_odom_local_ * report.T_local_base;
+}
+
+double PoseCorrection::moved() const {
+  return std::sqrt(std::max(0.0, square(sigma_) - square(account_.seen)));
 }
 
 double PoseCorrection::sigma() const {

@@ -21,6 +21,7 @@ struct OdometryReport {
   double sigma{};       ///< Standard deviation of the horizontal position since the odometry began, m.
   double sigma_seen{};  ///< See perception::OdometryState::sigma_seen, m.
   bool wheels_slip{};   ///< See perception::OdometryState.
+  std::uint32_t relocalised{};  ///< The same.
 };
 
 /// The two poses of a robot in the frame `odom`, by its own odometry and its driver's.
@@ -32,7 +33,9 @@ struct OdometryReport {
 /// in a turn that it does not make, cannot carry it away. What is not made up for yet is part of its error.
 ///
 /// Where the driver's frame began again, or another instance of the odometry begins, the next report
-/// continues from the present pose.
+/// continues from the present pose. An instance that begins while the robot is lost knows no more of the
+/// place than the one before: whatever it says of itself, the robot stays lost until its place is found, or
+/// set.
 class PoseCorrection {
  public:
   static constexpr double kPending = 0.2;   ///< A larger correction that is pending is not `ok`, m.
@@ -42,15 +45,31 @@ class PoseCorrection {
       : max_speed_(MotionBound::kFaster * platform.max_speed),
         max_turn_(MotionBound::kFaster * platform.max_turn) {}
 
-  /// Continues with a stored correction after a restart. `sigma`: of the pose before it, m.
-  void restore(const Pose3& T_odom_driver, double sigma) {
+  /// What is known of the instance that reports, and of those before it; standard deviations in m.
+  struct Account {
+    std::uint32_t instance{};     ///< 0: none has reported.
+    std::uint32_t relocalised{};  ///< Of its last report.
+    bool lost{};                  ///< The last report, or `unplaced`.
+    bool unplaced{};              ///< It began while the robot was lost, and its place was not found since.
+    double before{};              ///< Of the pose when it began.
+    double seen_before{};         ///< The same without what moved the body unseen until then.
+    double from{};                ///< Of the reported one, from which on it counts.
+    double seen{};                ///< See sigma_seen().
+  };
+
+  /// Continues with a stored correction after a restart. `sigma`: of the pose before it, m. `account`: as it
+  /// was, where the odometry was not restarted.
+  void restore(const Pose3& T_odom_driver, double sigma, const Account& account = {}) {
     T_odom_driver_ = wanted_ = T_odom_driver;
-    sigma_before_ = sigma_ = sigma;
+    sigma_ = sigma;
+    account_ = account;
+    if (account.instance == 0) account_.before = account_.seen_before = account_.seen = sigma;
   }
   /// An operator said where the robot is: sigma counts from here on.
   void reset_sigma() {
-    sigma_before_ = sigma_ = alone_ = 0.0;
-    reported_from_ = reported_;
+    sigma_ = alone_ = account_.before = account_.seen_before = account_.seen = 0.0;
+    account_.from = reported_;
+    account_.lost = account_.unplaced = false;
   }
   /// The driver's frame began again; reports about scans before `stamp` are of the previous one.
   void begin_frame(std::uint64_t stamp);
@@ -68,26 +87,37 @@ class PoseCorrection {
 
   /// Frame of the own odometry to odom, and its instance; nothing: see located().
   std::optional<Pose3> T_odom_local() const { return T_odom_local_; }
-  std::uint32_t instance() const { return instance_; }
+  std::uint32_t instance() const { return account_.instance; }
 
   const Pose3& T_odom_driver() const { return T_odom_driver_; }
   Localisation health(Time now) const;
+  /// Whether the last report was of a robot that is lost.
+  bool lost() const { return account_.lost; }
+  const Account& account() const { return account_; }
+  /// Standard deviation of the horizontal position when the lidar last saw something known, m.
+  double sigma_seen() const { return account_.seen; }
+  /// How far the body may have been moved since then, m.
+  double moved() const;
   /// Standard deviation of the horizontal position, with what is not made up for, m.
   double sigma() const;
 
  private:
+  /// The frame of the report begins at the present pose.
+  void begin(const OdometryReport& report);
+
   double max_speed_, max_turn_;  ///< Of the body, in m/s and rad/s.
   Pose3 T_odom_driver_{}, wanted_{};
   std::optional<Pose3> T_odom_local_{};  ///< Nothing: the next report sets it.
-  std::uint32_t instance_{}, jumps_{};
+  Account account_{};
+  std::uint32_t jumps_{};
   std::uint64_t frame_began_{}, applied_{}, reported_at_{};  ///< Stamps.
   std::optional<Pose3> T_driver_base_{}, T_odom_base_{};     ///< The newest ones.
   std::optional<Time> heard_{};
   Localisation health_{Localisation::starting};
-  double sigma_{}, sigma_before_{};      ///< In m; the latter is of earlier instances.
-  double reported_{}, reported_from_{};  ///< The present instance's, now and where sigma counts from, m.
-  double pending_{};                     ///< From apply() to where it should be, m.
-  double slip_{};                        ///< How fast the driver's odometry leaves the own one, m/s.
+  double sigma_{};     ///< Of the last report, m.
+  double reported_{};  ///< The present instance's part of it, m.
+  double pending_{};   ///< From apply() to where it should be, m.
+  double slip_{};      ///< How fast the driver's odometry leaves the own one, m/s.
   /// Standard deviation of the way by the driver's odometry alone since the last report, m.
   double alone_{};
   bool slips_{};  ///< The wheels slipped at the last report.

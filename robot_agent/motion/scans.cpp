@@ -182,15 +182,21 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
                           at,
                           state.sigma(),
                           state.sigma_seen,
-                          state.wheels_slip};
+                          state.wheels_slip,
+                          state.relocalised};
   // Otherwise the driver's frame began again, or it is silent.
   if (!newest || !apart || !heard) return std::nullopt;
   // The driver's clock is another one: what it sent last is of about the time of the scan.
   const auto health = at == Localisation::ok ? Localisation::weak : at;
-  return OdometryReport{
-      history_.newest(), state.pose,       state.pose * newest->inverse(),
-      instance_,         health,           std::hypot(state.sigma(), platform_.max_speed * kPairedWithin),
-      state.sigma_seen,  state.wheels_slip};
+  return OdometryReport{history_.newest(),
+                        state.pose,
+                        state.pose * newest->inverse(),
+                        instance_,
+                        health,
+                        std::hypot(state.sigma(), platform_.max_speed * kPairedWithin),
+                        state.sigma_seen,
+                        state.wheels_slip,
+                        state.relocalised};
 }
 
 void Scans::report_clock_steps() {

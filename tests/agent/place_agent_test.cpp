@@ -124,6 +124,45 @@ TEST_F(PlaceOfAnAgent, IsRefusedWhenTheLidarShowsTooLittleForTenSeconds) {
   EXPECT_EQ(op->behaviour.mode(), "hold");
 }
 
+TEST_F(PlaceOfAnAgent, StaysLostWhenItsSensorsAreRestarted) {
+  bench->obstacles = another_room();
+  bench->run(3s);
+  ASSERT_EQ(static_cast<Localisation>(op->state.localisation()), Localisation::lost);
+  const double sigma = op->state.sigma();
+  for (const char* component : {"sensors", "command", "sensors"}) {
+    ASSERT_EQ(bench->ask(*op, CMD_RESTART, component), Reason::none) << component;
+    for (int n = 0; n < 30; ++n) {
+      bench->run(100ms);
+      const auto health = static_cast<Localisation>(op->state.localisation());
+      ASSERT_TRUE(health == Localisation::lost || health == Localisation::starting)
+          << component << " " << n << " " << static_cast<int>(health);
+      ASSERT_GE(op->state.sigma(), 0.99 * sigma) << component << " " << n;
+    }
+  }
+  EXPECT_EQ(bench->ask(*op, CMD_GOTO, "", 5, 0), Reason::localisation_lost);
+  ASSERT_EQ(bench->ask(*op, CMD_MODE, "hold"), Reason::none);
+  ASSERT_EQ(bench->ask(*op, CMD_POSE, "", 1, 0), Reason::none);
+  bench->run(1s);
+  EXPECT_EQ(static_cast<Localisation>(op->state.localisation()), Localisation::ok);
+  EXPECT_LT(op->state.sigma(), 0.1);
+}
+
+TEST_F(PlaceOfAnAgent, IsFoundAfterItsSensorsWereRestartedWhileItWasLost) {
+  const PointCloud room_before = bench->obstacles;
+  bench->obstacles = another_room();
+  bench->run(3s);
+  ASSERT_EQ(static_cast<Localisation>(op->state.localisation()), Localisation::lost);
+  ASSERT_EQ(bench->ask(*op, CMD_RESTART, "sensors"), Reason::none);
+  bench->run(1s);
+  ASSERT_EQ(static_cast<Localisation>(op->state.localisation()), Localisation::lost);
+  bench->obstacles = room_before;
+  ASSERT_EQ(bench->ask(*op, CMD_RESTART, "sensors"), Reason::none);
+  bench->run(4s);
+  EXPECT_EQ(static_cast<Localisation>(op->state.localisation()), Localisation::ok);
+  EXPECT_NEAR(op->state.pose().x(), 0.0, 0.1);
+  EXPECT_LT(op->state.sigma(), 0.3);
+}
+
 TEST_F(PlaceOfAnAgent, IsNotKnownBetterAfterARestart) {
   ASSERT_EQ(bench->ask(*op, CMD_GOTO, "", 8, 0), Reason::none);
   bench->run(12s);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace adit::agent {
@@ -265,6 +266,76 @@ TEST(PoseCorrection, SigmaCountsFromAnOperatorsPose) {
   EXPECT_NEAR(correction.sigma(), 0.25, 0.02);
   drive_on(correction, drive, 0.02, 2, 0.02);  // Another instance.
   EXPECT_NEAR(correction.sigma(), 0.25, 0.02);
+}
+
+/// A report of a robot that stands where it is; lost with a standard deviation of 8 m, seen with 0.3 m.
+OdometryReport standing(const Drive& drive, std::uint32_t instance, bool lost,
+                        std::uint32_t relocalised = 0) {
+  OdometryReport report = drive.report(Pose3{}, instance);
+  report.health = lost ? Localisation::lost : Localisation::ok;
+  report.sigma = lost ? 8.0 : 0.02;
+  report.sigma_seen = lost ? 0.3 : 0.02;
+  report.relocalised = relocalised;
+  return report;
+}
+
+TEST(PoseCorrection, AnotherInstanceDoesNotFindAPlaceThatWasLost) {
+  PoseCorrection correction(wheeled());
+  Drive drive;
+  const auto take = [&](const OdometryReport& report) {
+    drive.stamp += 20 * kMs;
+    correction.apply(drive.driver(), drive.stamp);
+    correction.take(report, kNow);
+  };
+  take(standing(drive, 1, false));
+  take(standing(drive, 1, true));
+  for (int n = 0; n < 100; ++n) {
+    take(standing(drive, 2, false));
+    ASSERT_EQ(correction.health(kNow), Localisation::lost) << n;
+    ASSERT_GT(correction.sigma(), 7.9) << n;
+    ASSERT_NEAR(correction.sigma_seen(), 0.3, 0.01) << n;
+    ASSERT_NEAR(correction.moved(), 8.0, 0.02) << n;
+  }
+  take(standing(drive, 3, false));  // Nor does a third one.
+  EXPECT_EQ(correction.health(kNow), Localisation::lost);
+  // The command component is restarted, too.
+  PoseCorrection next(wheeled());
+  next.restore(correction.T_odom_driver(), correction.sigma(), correction.account());
+  next.apply(drive.driver(), drive.stamp);
+  next.take(standing(drive, 3, false), kNow);
+  EXPECT_EQ(next.health(kNow), Localisation::lost);
+  EXPECT_NEAR(next.moved(), 8.0, 0.05);
+  OdometryReport found = standing(drive, 3, false, 1);
+  found.sigma = 0.1;
+  take(found);
+  EXPECT_EQ(correction.health(kNow), Localisation::ok);
+  EXPECT_NEAR(correction.sigma(), std::hypot(0.3, 0.1), 0.02);
+}
+
+TEST(PoseCorrection, AnOperatorsPoseEndsThatAnotherInstanceIsLost) {
+  PoseCorrection correction(wheeled());
+  Drive drive;
+  correction.apply(drive.driver(), drive.stamp);
+  correction.take(standing(drive, 1, true), kNow);
+  correction.take(standing(drive, 2, false), kNow);
+  ASSERT_EQ(correction.health(kNow), Localisation::lost);
+  correction.reset_sigma();
+  correction.take(standing(drive, 2, false), kNow);
+  EXPECT_EQ(correction.health(kNow), Localisation::ok);
+  EXPECT_LT(correction.sigma(), 0.05);
+}
+
+TEST(PoseCorrection, ARestartOfTheCommandComponentAddsNothingToSigma) {
+  PoseCorrection before(wheeled());
+  Drive drive;
+  before.apply(drive.driver(), drive.stamp);
+  before.take(standing(drive, 1, true), kNow);
+  PoseCorrection after(wheeled());
+  after.restore(before.T_odom_driver(), before.sigma(), before.account());
+  after.apply(drive.driver(), drive.stamp);
+  after.take(standing(drive, 1, true), kNow);
+  EXPECT_NEAR(after.sigma(), before.sigma(), 1e-9);
+  EXPECT_NEAR(after.moved(), before.moved(), 1e-9);
 }
 
 TEST(PoseCorrection, SilenceIsNoHealth) {

@@ -131,6 +131,17 @@ TEST(LostRobot, FindsItsPlaceByWhatItSawBefore) {
   }
 }
 
+TEST(LostRobot, StaysLostWhenItsSensorsAreRestarted) {
+  // Places look alike here, so that only the operator can say where it is.
+  const std::string text =
+      carried(1, "", "") +
+      "  - {at: 21, crash: r1/sensors}\n"
+      "expect:\n  - {at: 20.5, by_operator: op1, notified: localisation_lost, robot: r1}\n"
+      "  - {at: 27, by_operator: op1, refused: localisation_lost}\n"
+      "  - {at: 39, robot: r1, near: [6, 2, 0.3]}\n";
+  EXPECT_EQ(run_text(text, "restarted.yaml").complaints(), std::vector<std::string>{});
+}
+
 TEST(SpinningWheels, EndAnAutonomousMode) {
   std::string text = carried(1, "", "  - {at: 28, by: op1, do: goto r1 12 2}\n");
   text = text.substr(0, text.find("faults:")) +
