@@ -148,6 +148,8 @@ class Agent::CommandComponent : public Component {
   void place_found(const Result<perception::RecognisedPlace>& found, const Pose3& guess, double sigma);
   /// Moves the odometry. `correction`: in odom.
   void correct_odometry(const Pose3& correction, double sigma, double sigma_heading);
+  /// An operator said where a lost robot is: its odometry goes on from there.
+  void place_set();
   /// Zero and hold until an operator sets the pose.
   void place_unknown(const std::string& why);
   void watch_driver();

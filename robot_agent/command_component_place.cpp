@@ -65,7 +65,7 @@ Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
     frames_.begin_frame();
     navigation_.clear();
     waiting_scan_.reset();
-    correct_odometry({}, 0.0, 0.0);
+    place_set();
   }
   frames_.set_pose(pose);
   correction_.reset_sigma();
@@ -165,9 +165,20 @@ void Agent::CommandComponent::place_found(const Result<perception::RecognisedPla
 void Agent::CommandComponent::correct_odometry(const Pose3& correction, double sigma, double sigma_heading) {
   const auto T_odom_local = correction_.T_odom_local();
   if (!T_odom_local) return;
+  // One that failed is lost still, and searches again.
   call(context_.found_place,
-       {correction_.instance(), T_odom_local->inverse() * correction * *T_odom_local, sigma, sigma_heading},
-       {.deadline = 1s}, [](const Result<void>&) {});  // One that failed is lost still, and searches again.
+       {correction_.instance(), correction_.steps(), T_odom_local->inverse() * correction * *T_odom_local,
+        sigma, sigma_heading},
+       {.deadline = 1s}, [](const Result<std::uint32_t>&) {});
+}
+
+void Agent::CommandComponent::place_set() {
+  if (!correction_.T_odom_local()) return;
+  correction_.hold_steps();
+  call(context_.found_place, {.instance = correction_.instance()}, {.deadline = 1s},
+       [this](const Result<std::uint32_t>& steps) {
+         correction_.release_steps(steps ? std::optional(*steps) : std::nullopt);
+       });
 }
 
 void Agent::CommandComponent::place_unknown(const std::string& why) {

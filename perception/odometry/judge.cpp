@@ -56,6 +56,7 @@ void LidarOdometry::judge(const Registered& found) {
   if (contradicted || too_fast || share < kLeastShare || !(distance < kMaxInnovation)) return miss(dt);
   const bool was_lost = state_.health == Localisation::lost;
   ++good_;
+  if (was_lost && good_ == 1) ++state_.steps;  // The first cloud that fits draws the pose to the map.
   if (!was_lost || good_ >= kGoodForFound) {
     bad_ = 0;
     missed_for_ = 0.0;
@@ -162,6 +163,7 @@ void LidarOdometry::search_before() {
   drift_ = before_->drift;
   before_.reset();
   state_.unplaced = false;
+  ++state_.steps;
   bad_ = 0;
   missed_for_ = 0.0;
   established_ = true;
@@ -177,7 +179,9 @@ void LidarOdometry::search_before() {
   way_pose_.reset();
 }
 
-void LidarOdometry::relocalised(const Pose3& correction, double sigma, double sigma_heading) {
+bool LidarOdometry::relocalised(const Pose3& correction, double sigma, double sigma_heading,
+                                std::optional<std::uint32_t> steps) {
+  if (steps && *steps != state_.steps) return false;
   T_odom_local_ = correction * T_odom_local_;
   T_odom_local_.orientation.normalize();
   drift_.clear();
@@ -187,6 +191,7 @@ void LidarOdometry::relocalised(const Pose3& correction, double sigma, double si
   before_.reset();
   state_.unplaced = false;
   ++state_.relocalised;
+  ++state_.steps;
   // The map lies where the body was believed to be.
   if (state_.health == Localisation::lost) {
     begin_map();
@@ -194,6 +199,7 @@ void LidarOdometry::relocalised(const Pose3& correction, double sigma, double si
   }
   state_.pose = odom_pose(filter_.pose());
   state_.covariance = drift_.covariance() + pose_covariance_;
+  return true;
 }
 
 }  // namespace adit::perception

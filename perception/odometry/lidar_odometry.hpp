@@ -85,7 +85,11 @@ class LidarOdometry {
   ///
   /// @param correction  In odom; it keeps the vertical.
   /// @param sigma       Standard deviations of the corrected pose: horizontally, m; of the heading, rad.
-  void relocalised(const Pose3& correction, double sigma, double sigma_heading);
+  /// @param steps       OdometryState::steps of the pose that was compared. When there was another step
+  /// since,
+  ///     nothing happens, and the result is false. Nothing: it holds for every pose.
+  bool relocalised(const Pose3& correction, double sigma, double sigma_heading,
+                   std::optional<std::uint32_t> steps = {});
   /// The wheels' frame began again elsewhere.
   void forget_wheels() { filter_.forget_wheels(); }
 

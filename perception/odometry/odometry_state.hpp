@@ -49,7 +49,10 @@ struct OdometryState {
   /// sigma() when the last cloud fitted a map whose place was known, m. What is more of it is how far the
   /// body can have been moved since.
   double sigma_seen{};
-  std::uint32_t relocalised{};  ///< Calls of LidarOdometry::relocalised() so far.
+  std::uint32_t relocalised{};  ///< Calls of LidarOdometry::relocalised() that had an effect.
+  /// Steps of the pose that are no motion of the body: by relocalised(), or by a map that it had lost and
+  /// that fits again. A correction that was found for a pose before the last step is none of a pose after it.
+  std::uint32_t steps{};
   /// The wheels report a motion that lidar or IMU contradict, as of a body that is stuck.
   bool wheels_slip{};
   std::size_t matched{};  ///< Points that lie on a known plane.

@@ -65,7 +65,13 @@ void PoseCorrection::take(const OdometryReport& report, Time now) {
   heard_ = now;
   health_ = report.health;
   if (report.health == Localisation::starting || !T_driver_base_) return;
-  if (!T_odom_local_ || report.instance != account_.instance) begin(report);
+  const bool stepped = report.steps != account_.steps;
+  if (!T_odom_local_ || report.instance != account_.instance || (stepped && holds_steps_until_))
+    begin(report);
+  else if (stepped)
+    ++jumps_;
+  account_.steps = report.steps;
+  if (holds_steps_until_ && report.steps >= *holds_steps_until_) holds_steps_until_.reset();
   if (report.relocalised != std::exchange(account_.relocalised, report.relocalised) &&
       std::exchange(account_.unplaced, false))
     account_.before = account_.seen_before;

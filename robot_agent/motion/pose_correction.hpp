@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "core/config/perception_level.hpp"
@@ -22,6 +23,7 @@ struct OdometryReport {
   double sigma_seen{};  ///< See perception::OdometryState::sigma_seen, m.
   bool wheels_slip{};   ///< See perception::OdometryState.
   std::uint32_t relocalised{};  ///< The same.
+  std::uint32_t steps{};        ///< The same.
 };
 
 /// The two poses of a robot in the frame `odom`, by its own odometry and its driver's.
@@ -49,6 +51,7 @@ class PoseCorrection {
   struct Account {
     std::uint32_t instance{};     ///< 0: none has reported.
     std::uint32_t relocalised{};  ///< Of its last report.
+    std::uint32_t steps{};        ///< The same.
     bool lost{};                  ///< The last report, or `unplaced`.
     bool unplaced{};              ///< It began while the robot was lost, and its place was not found since.
     double before{};              ///< Of the pose when it began.
@@ -71,6 +74,11 @@ class PoseCorrection {
     account_.from = reported_;
     account_.lost = account_.unplaced = false;
   }
+  /// Until the odometry knows of a pose that an operator set, it may still step to a place that it found
+  /// before: its pose goes on from the present one after each step.
+  void hold_steps() { holds_steps_until_ = std::numeric_limits<std::uint32_t>::max(); }
+  /// It knows of it since so many steps; nothing: it does not answer.
+  void release_steps(std::optional<std::uint32_t> steps) { holds_steps_until_ = steps; }
   /// The driver's frame began again; reports about scans before `stamp` are of the previous one.
   void begin_frame(std::uint64_t stamp);
   /// Moves the pose by `correction` in odom, as it was found by other means; level.
@@ -88,6 +96,7 @@ class PoseCorrection {
   /// Frame of the own odometry to odom, and its instance; nothing: see located().
   std::optional<Pose3> T_odom_local() const { return T_odom_local_; }
   std::uint32_t instance() const { return account_.instance; }
+  std::uint32_t steps() const { return account_.steps; }
 
   const Pose3& T_odom_driver() const { return T_odom_driver_; }
   Localisation health(Time now) const;
@@ -109,6 +118,7 @@ class PoseCorrection {
   Pose3 T_odom_driver_{}, wanted_{};
   std::optional<Pose3> T_odom_local_{};  ///< Nothing: the next report sets it.
   Account account_{};
+  std::optional<std::uint32_t> holds_steps_until_{};
   std::uint32_t jumps_{};
   std::uint64_t frame_began_{}, applied_{}, reported_at_{};  ///< Stamps.
   std::optional<Pose3> T_driver_base_{}, T_odom_base_{};     ///< The newest ones.

@@ -29,6 +29,15 @@ constexpr double kClocksApart = 0.5;                 // s; longer than any delay
 constexpr double kPairedWithin = 0.2;                // s; between a scan and the odometry heard with it
 constexpr int kScansApart = 3;                       // consecutive scans; fewer are those of a busy computer
 
+/// Adds what the odometry knows of its place.
+std::optional<OdometryReport> with_place(std::optional<OdometryReport> report,
+                                         const perception::OdometryState& state) {
+  if (!report) return report;
+  report->relocalised = state.relocalised;
+  report->steps = state.steps;
+  return report;
+}
+
 }  // namespace
 
 Scans::Scans(Executor& strand, Log log, const Platform& platform, const ScanService& output, Report report,
@@ -52,11 +61,12 @@ Scans::Scans(Executor& strand, Log log, const Platform& platform, const ScanServ
 
 Result<void> Scans::on_start() {
   if (found_place_ == nullptr) return {};
-  offer(*found_place_, [this](const FoundPlace& found, const Reply<void>& reply) {
+  offer(*found_place_, [this](const FoundPlace& found, const Reply<std::uint32_t>& reply) {
     if (!odometry_ || found.instance != instance_)
       return reply(Error{Reason::cancelled, "the odometry began again"});
-    odometry_->relocalised(found.correction, found.sigma, found.sigma_heading);
-    reply({});
+    if (!odometry_->relocalised(found.correction, found.sigma, found.sigma_heading, found.steps))
+      return reply(Error{Reason::cancelled, "the odometry found its place itself"});
+    reply(odometry_->state().steps);
   });
   return {};
 }
@@ -182,21 +192,15 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
                           at,
                           state.sigma(),
                           state.sigma_seen,
-                          state.wheels_slip,
-                          state.relocalised};
+                          state.wheels_slip};
   // Otherwise the driver's frame began again, or it is silent.
   if (!newest || !apart || !heard) return std::nullopt;
   // The driver's clock is another one: what it sent last is of about the time of the scan.
   const auto health = at == Localisation::ok ? Localisation::weak : at;
-  return OdometryReport{history_.newest(),
-                        state.pose,
-                        state.pose * newest->inverse(),
-                        instance_,
-                        health,
-                        std::hypot(state.sigma(), platform_.max_speed * kPairedWithin),
-                        state.sigma_seen,
-                        state.wheels_slip,
-                        state.relocalised};
+  return OdometryReport{
+      history_.newest(), state.pose,       state.pose * newest->inverse(),
+      instance_,         health,           std::hypot(state.sigma(), platform_.max_speed * kPairedWithin),
+      state.sigma_seen,  state.wheels_slip};
 }
 
 void Scans::report_clock_steps() {
@@ -231,7 +235,7 @@ void Scans::pass_on(std::size_t lidar) {
   for (const perception::ScanWarning& warning : complete.warnings)
     warn(lidars_[lidar].topic, warning.code, warning.reason, warning.text);
   std::optional<OdometryReport> report;
-  if (located && complete.stamp != 0) report = locate(complete);
+  if (located && complete.stamp != 0) report = with_place(locate(complete), odometry_->state());
   // The odometry knows roll and pitch better than a filter of the IMU alone.
   const auto attitude = report && report->health != Localisation::lost ? std::nullopt : complete.attitude;
   call(output_,

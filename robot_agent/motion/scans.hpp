@@ -50,12 +50,15 @@ using ScanService = Service<LidarScan, void>;
 /// The place of a robot that was lost, as it was found by other means.
 struct FoundPlace {
   std::uint32_t instance{};  ///< Of the odometry.
+  /// OdometryReport::steps of the pose that was compared; nothing: it holds for every pose.
+  std::optional<std::uint32_t> steps{};
   /// From where it believed to be to where it is, in the odometry's own frame; keeps the vertical.
   Pose3 correction{};
   double sigma{}, sigma_heading{};  ///< Standard deviations of the corrected pose, m and rad.
 };
-/// Moves the robot's own odometry; offered by Scans. Error: cancelled when it is another instance by now.
-using FoundPlaceService = Service<FoundPlace, void>;
+/// Moves the robot's own odometry; offered by Scans. Returns OdometryReport::steps from then on. Error:
+/// cancelled when it is another instance by now, or its pose stepped since.
+using FoundPlaceService = Service<FoundPlace, std::uint32_t>;
 
 /// Turns what the sensors send into scans (perception/input), on a strand of its own, so that they never
 /// delay the command strand.

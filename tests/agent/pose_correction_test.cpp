@@ -325,6 +325,40 @@ TEST(PoseCorrection, AnOperatorsPoseEndsThatAnotherInstanceIsLost) {
   EXPECT_LT(correction.sigma(), 0.05);
 }
 
+TEST(PoseCorrection, AStepThatWasOnItsWayDoesNotMoveAnOperatorsPose) {
+  PoseCorrection correction(wheeled());
+  Drive drive;
+  const auto take = [&](const OdometryReport& report) {
+    drive.stamp += 20 * kMs;
+    correction.apply(drive.driver(), drive.stamp);
+    correction.take(report, kNow);
+    return correction.located(report)->position;
+  };
+  OdometryReport report = standing(drive, 1, true);
+  const Eigen::Vector3d set = take(report);
+  correction.hold_steps();
+  correction.reset_sigma();
+  // A place that was found just before, and then the operator's pose.
+  const Pose3 found = Pose3::level({6, 2, 1}, 0);
+  const auto moved = [&](std::uint32_t steps) {
+    OdometryReport out = standing(drive, 1, false, steps);
+    out.T_local_base = found * out.T_local_base;
+    out.T_local_driver = found * out.T_local_driver;
+    out.steps = steps;
+    return out;
+  };
+  const std::uint32_t jumps = correction.jumps();
+  EXPECT_LT((take(moved(1)) - set).norm(), 0.01);
+  EXPECT_GT(correction.jumps(), jumps);
+  correction.release_steps(2);
+  EXPECT_LT((take(moved(2)) - set).norm(), 0.01);
+  // One that follows is a new one.
+  OdometryReport next = moved(3);
+  next.T_local_base.position.y() += 1.0;
+  next.T_local_driver.position.y() += 1.0;
+  EXPECT_NEAR((take(next) - set).norm(), 1.0, 0.01);
+}
+
 TEST(PoseCorrection, ARestartOfTheCommandComponentAddsNothingToSigma) {
   PoseCorrection before(wheeled());
   Drive drive;

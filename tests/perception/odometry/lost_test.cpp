@@ -108,6 +108,48 @@ TEST(Lost, AnotherHallIsNotTakenForTheFirst) {
     }
 }
 
+TEST(Lost, ACorrectionOfAPoseBeforeAStepIsRefused) {
+  const Pose3 slid = Pose3::level({1.8, 1.2, 0.7}, 0);
+  // It was applied before, or the robot has found its place itself meanwhile.
+  for (const bool twice : {true, false}) {
+    SCOPED_TRACE(twice ? "twice" : "found itself");
+    MovedBody body(true);
+    for (int n = 0; n < 30; ++n) body.sweep(kRoom, Pose3{});
+    EXPECT_EQ(body.odometry.state().steps, 0U);
+    for (int n = 0; n < 80; ++n) body.sweep(kRoom, slid);
+    ASSERT_TRUE(body.odometry.state().unplaced);
+    const std::uint32_t steps = body.odometry.state().steps;
+    const Pose3 correction = slid * body.odometry.state().pose.inverse();
+    if (twice) {
+      EXPECT_TRUE(body.odometry.relocalised(correction, 0.1, 0.02, steps));
+      EXPECT_EQ(body.odometry.state().relocalised, 1U);
+      for (int n = 0; n < 10; ++n) body.sweep(kRoom, slid);
+    } else {
+      // It comes back into what it saw first.
+      for (int n = 0; n < 60; ++n) body.sweep(kRoom, Pose3{});
+      EXPECT_EQ(body.odometry.state().relocalised, 0U);
+    }
+    const Pose3 at = body.odometry.state().pose;
+    ASSERT_EQ(body.odometry.state().health, Localisation::ok);
+    EXPECT_FALSE(body.odometry.relocalised(correction, 0.1, 0.02, steps));
+    EXPECT_EQ(body.odometry.state().pose.position, at.position);
+    EXPECT_TRUE(body.odometry.relocalised({}, 0.1, 0.02, body.odometry.state().steps));
+  }
+}
+
+TEST(Lost, ACorrectionIsRefusedWhenThePoseWasDrawnToTheMapMeanwhile) {
+  MovedBody body(true);
+  for (int n = 0; n < 30; ++n) body.sweep(kRoom, Pose3{});
+  const Hall dust{{-1, -1, -0.3}, {1.1, 1.2, 1}};
+  for (int n = 0; n < 10; ++n) body.sweep(dust, Pose3{});
+  ASSERT_EQ(body.odometry.state().health, Localisation::lost);
+  const std::uint32_t steps = body.odometry.state().steps;
+  body.sweep(kRoom, Pose3::level({0.3, 0, 0}, 0));
+  ASSERT_EQ(body.odometry.state().health, Localisation::lost);
+  ASSERT_NEAR(body.odometry.state().pose.position.x(), 0.3, 0.05);
+  EXPECT_FALSE(body.odometry.relocalised(Pose3::level({0.3, 0, 0}, 0), 0.1, 0.02, steps));
+}
+
 TEST(Lost, TheFirstMapIsFoundAgainAfterANewOneBegan) {
   MovedBody body(true);
   for (int n = 0; n < 30; ++n) body.sweep(kRoom, Pose3{});
