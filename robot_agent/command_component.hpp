@@ -28,6 +28,7 @@
 #include "robot_agent/notices/notices.hpp"
 #include "robot_agent/perception/keyframe_store.hpp"
 #include "robot_agent/perception/map_keeper.hpp"
+#include "robot_agent/perception/place_agreement.hpp"
 #include "robot_agent/perception/place_check.hpp"
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
@@ -214,7 +215,7 @@ class Agent::CommandComponent : public Component {
   std::optional<Time> holder_heard_{};  ///< First heartbeat of the holder since the start.
   std::optional<Time> jump_reported_{};
   std::optional<Time> searched_{};  ///< When a lost robot began to search its place last.
-  std::optional<Pose3> found_{};    ///< Correction in odom that one scan has found so far.
+  PlaceAgreement found_{};          ///< Of the results of the search so far.
   int comparisons_{};               ///< Scans that did not fit the stored keyframes.
   RivalWatch rivals_;
   std::vector<TopicUse> topics_;             ///< Of the robot domain.

@@ -146,18 +146,9 @@ void Agent::CommandComponent::search_place(const std::shared_ptr<const Scan>& sc
 
 void Agent::CommandComponent::place_found(const Result<perception::RecognisedPlace>& found,
                                           const Pose3& guess, double sigma) {
-  constexpr double kSame = 0.3, kSameTurn = 0.1;     // m and rad, as of relocalise()
   constexpr double kAlike = 0.1, kAlikeTurn = 0.02;  // What align() leaves, m and rad.
   if (!found || found->match != perception::PlaceMatch::found) return found_.reset();
-  // Two scans must agree: one alone may lie on another place by accident.
-  const auto before = std::exchange(found_, found->correction);
-  const Pose3 at = found->correction * guess;
-  if (!before) return;
-  const Pose3 expected = *before * guess;
-  if ((at.position - expected.position).norm() > kSame ||
-      std::abs(wrap_angle(at.yaw() - expected.yaw())) > kSameTurn)
-    return;
-  found_.reset();
+  if (!found_.agrees(found->correction, guess, {frames_.odom_epoch(), correction_.jumps()})) return;
   if (log().on(LogLevel::info)) log().info("found its place again by what it saw before");
   correct_odometry(found->correction, std::hypot(sigma, kAlike), kAlikeTurn);
 }
