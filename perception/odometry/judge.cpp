@@ -15,10 +15,10 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 constexpr double kLeastShare = 0.25;  ///< Of the points with a plane nearby that match it, and of Agreement.
 constexpr double kFoundShare = 0.5;   ///< Of Agreement, after it was lost: more for than against it.
 constexpr double kLeastAgainst =
-    20.0;                          ///< Points that contradict; fewer are a person, or a door that opened.
-constexpr int kBadForLost = 5;     ///< Clouds in a row that do not fit.
-constexpr int kBadForNewMap = 50;  ///< Clouds in a row after which it begins a new map.
-constexpr int kGoodForFound = 3;   ///< Clouds in a row that fit again.
+    20.0;                             ///< Points that contradict; fewer are a person, or a door that opened.
+constexpr int kBadForLost = 5;        ///< Clouds in a row that do not fit.
+constexpr double kNewMapAfter = 5.0;  ///< Of clouds that do not fit, in a row, it begins a new map, s.
+constexpr int kGoodForFound = 3;      ///< Clouds in a row that fit again.
 constexpr double kMaxInnovation = 30.0;  ///< Squared standard deviations for each of six numbers.
 constexpr int kFirstMotion = 5;          ///< Clouds in a row that fit, after which the motion is known.
 constexpr double kLeastWindow = 0.05;    ///< m
@@ -120,7 +120,7 @@ void LidarOdometry::miss(double dt) {
   if (bad_ >= kBadForLost) state_.health = Localisation::lost;
   state_.localizability = {};
   filter_.learn_scale(false);
-  if (bad_ < kBadForNewMap) return;
+  if (missed_for_ < kNewMapAfter - 1e-6) return;
   if (established_) {
     // Of two maps that it lost, the place of the first is known.
     if (!state_.unplaced) before_.emplace(Before{std::move(map_), std::move(space_), drift_});

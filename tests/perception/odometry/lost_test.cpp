@@ -39,7 +39,7 @@ struct MovedBody {
   }
   /// One sweep in a hall; `rolled`: the pose by the wheels.
   const OdometryState& sweep(const Hall& hall, const Pose3& at, const Pose3& rolled = {}) {
-    stamp += 100'000'000;
+    stamp += period;
     if (wheels) odometry.add(BodyMotion{stamp, rolled});
     odometry.advance(stamp);
     return odometry.update(cloud(hall, at));
@@ -48,6 +48,7 @@ struct MovedBody {
   bool wheels;
   LidarOdometry odometry;
   Random random{1};
+  std::uint64_t period{100'000'000};  ///< Of the sweeps, ns.
   std::uint64_t stamp{1'000'000'000'000};
 };
 
@@ -108,6 +109,19 @@ TEST(Lost, AnotherHallIsNotTakenForTheFirst) {
     }
 }
 
+TEST(Lost, ANewMapBeginsAfterFiveSecondsWhateverTheRate) {
+  for (const std::uint64_t period : {50'000'000U, 100'000'000U, 150'000'000U, 200'000'000U}) {
+    MovedBody body(true);
+    body.period = period;
+    for (int n = 0; n < 30; ++n) body.sweep(kRoom, Pose3{});
+    const std::uint64_t moved_at = body.stamp;
+    while (!body.odometry.state().unplaced && body.stamp < moved_at + 20'000'000'000)
+      body.sweep(kRoom, Pose3::level({1.8, 1.2, 0.7}, 0));
+    const double seconds = static_cast<double>(body.stamp - moved_at) * 1e-9;
+    EXPECT_NEAR(seconds, 5.0, 1.01 * static_cast<double>(period) * 1e-9) << period;
+  }
+}
+
 TEST(Lost, ACorrectionOfAPoseBeforeAStepIsRefused) {
   const Pose3 slid = Pose3::level({1.8, 1.2, 0.7}, 0);
   // It was applied before, or the robot has found its place itself meanwhile.
@@ -138,7 +152,7 @@ TEST(Lost, ACorrectionOfAPoseBeforeAStepIsRefused) {
 }
 
 TEST(Lost, ACorrectionIsRefusedWhenThePoseWasDrawnToTheMapMeanwhile) {
-  MovedBody body(true);
+  MovedBody body(false);
   for (int n = 0; n < 30; ++n) body.sweep(kRoom, Pose3{});
   const Hall dust{{-1, -1, -0.3}, {1.1, 1.2, 1}};
   for (int n = 0; n < 10; ++n) body.sweep(dust, Pose3{});
