@@ -20,7 +20,6 @@ constexpr double kTurnStep = 0.045;        ///< The same, rad.
 constexpr float kNear = 0.4f;              ///< Distance from a wall that counts in a comparison, m.
 constexpr float kLevel = 0.9f;             ///< Vertical part of the normal of a floor.
 constexpr int kSquare = 4;                 ///< Poses along an edge of the squares that are bounded, steps.
-constexpr std::size_t kMaxSquares = 4000;  ///< Whose poses are compared, the most promising first.
 constexpr std::size_t kSearchPoints = 200, kMinSearchPoints = 30;  ///< Of the scan, on upright planes.
 constexpr std::size_t kCandidates = 10;                            ///< Poses that are laid onto the planes.
 constexpr double kApart = 0.75, kApartTurn = 0.2;  ///< Candidates differ by at least so much, m, rad.
@@ -91,7 +90,8 @@ class Plan {
   static constexpr int kSize = 2 * kHalf + 1;
 
  private:
-  std::vector<std::uint8_t> near_, bound_{};  ///< The latter: the highest of kSquare steps in x and y.
+  std::vector<std::uint8_t> near_;     ///< Of each cell, how near it is to a wall.
+  std::vector<std::uint8_t> bound_{};  ///< The highest of near_ over kSquare steps in x and y from each cell.
 };
 
 struct Candidate {
@@ -119,10 +119,15 @@ std::vector<std::size_t> cells_of(const Points& points, double yaw) {
   return cells;
 }
 
-/// Poses at which points lie on the plan's walls, the best first, that differ.
-std::vector<Candidate> search(const Plan& plan, const Points& points, double radius, double max_turn) {
+/// Poses that differ, at which points lie on the plan's walls.
+struct Found {
+  std::vector<Candidate> best{};  ///< The best first.
+  bool complete{};                ///< No pose that was not compared belongs among them.
+};
+
+Found search(const Plan& plan, const Points& points, double radius, const RelocaliseParams& params) {
   const int reach = kStep * static_cast<int>(std::ceil(radius / (kStep * kCell) - 1e-9));
-  const int turns = static_cast<int>(std::ceil(max_turn / kTurnStep - 1e-9));
+  const int turns = static_cast<int>(std::ceil(params.max_turn / kTurnStep - 1e-9));
   std::vector<Square> squares;
   for (int turn = -turns; turn <= turns; ++turn) {
     const auto cells = cells_of(points, turn * kTurnStep);
@@ -132,7 +137,8 @@ std::vector<Candidate> search(const Plan& plan, const Points& points, double rad
   }
   std::stable_sort(squares.begin(), squares.end(),
                    [](const auto& a, const auto& b) { return a.bound > b.bound; });
-  if (squares.size() > kMaxSquares) squares.resize(kMaxSquares);
+  const std::uint32_t left_out = squares.size() > params.max_squares ? squares[params.max_squares].bound : 0;
+  if (squares.size() > params.max_squares) squares.resize(params.max_squares);
   std::vector<Candidate> all;
   std::uint32_t highest = 0;
   for (const Square& square : squares) {
@@ -149,13 +155,15 @@ std::vector<Candidate> search(const Plan& plan, const Points& points, double rad
       }
   }
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
-  std::vector<Candidate> best;
+  Found found;
+  std::vector<Candidate>& best = found.best;
   for (const Candidate& each : all) {
-    if (best.size() == kCandidates || 2 * each.score < all.front().score) break;
+    if (best.size() == kCandidates || 2 * each.score < highest) break;
     if (std::none_of(best.begin(), best.end(), [&](const Candidate& other) { return each.near(other); }))
       best.push_back(each);
   }
-  return best;
+  found.complete = best.size() == kCandidates ? left_out < best.back().score : 2 * left_out < highest;
+  return found;
 }
 
 bool is_same(const Pose3& a, const Pose3& b) {
@@ -175,14 +183,21 @@ Result<RecognisedPlace> relocalise(std::span<const Keyframe> keyframes,
                                    std::span<const Eigen::Vector3f> points, const Pose3& guess, double sigma,
                                    const RelocaliseParams& params) {
   const double radius = std::min(kMaxRelocaliseRadius, 3.0 * sigma + params.moved);
+  // On a ramp the body leans. What is unknown is a turn about the vertical, and the plan is one from above.
+  // Along odom's axes the planes, and so the result, do not depend on the guess's heading.
+  const Pose3 level{guess.position, Eigen::Quaterniond::Identity()};
+  const Pose3 T_level_guess = level.inverse() * guess;
   const PointCloud surfaces =
-      surfaces_near(keyframes, guess, kNearKeyframe + radius, kMaxKeyframes, 2.0 * radius / kMaxKeyframes);
+      surfaces_near(keyframes, level, kNearKeyframe + radius, kMaxKeyframes, 2.0 * radius / kMaxKeyframes);
   const std::size_t least = params.planar ? kMinPlanarPoints : kMinPlacePoints;
   if (surfaces.size() < least) return RecognisedPlace{};
   RecognisedPlace place;
   place.match = PlaceMatch::cannot_tell;
   // Thinned as a keyframe, so that walls near the lidar do not count more than others.
-  const PointCloud scan = surfaces_of(make_keyframe(points, guess, 0).points, params.planar);
+  PointCloud scan = make_keyframe(points, guess, 0).points;
+  const Eigen::Matrix3f R = T_level_guess.orientation.toRotationMatrix().cast<float>();
+  for (Eigen::Vector3f& p : scan) p = R * p;
+  scan = surfaces_of(scan, params.planar);
   if (points.size() < least || scan.empty()) return place;
   Points walls = upright(scan, align_target(scan, params.noise));
   // A point in the corner of the keyframe's reach leaves the plan when it is turned.
@@ -193,8 +208,9 @@ Result<RecognisedPlace> relocalise(std::span<const Keyframe> keyframes,
   for (std::size_t n = 0; n < walls.size(); n += step) some.push_back(walls[n]);
 
   const VoxelPlanes target = align_target(surfaces, params.noise);
+  const Found candidates = search(Plan(upright(surfaces, target)), some, radius, params);
   std::vector<Alignment> found;
-  for (const Candidate& each : search(Plan(upright(surfaces, target)), some, radius, params.max_turn))
+  for (const Candidate& each : candidates.best)
     found.push_back(align(target, scan, Pose3::level({each.x, each.y, each.yaw}, 0),
                           {.range_noise = params.noise, .keeps_undetermined = true}));
   if (found.empty()) return refused("no place within %.1f m fits what the lidar sees", radius, 0);
@@ -212,8 +228,10 @@ Result<RecognisedPlace> relocalise(std::span<const Keyframe> keyframes,
   if (best.pose.position.head<2>().norm() > radius + kSame)
     return refused("the surroundings fit %.1f m beside the expected place, %.1f m are possible",
                    best.pose.position.head<2>().norm(), radius);
+  if (!candidates.complete)
+    return refused("too many places within %.1f m could fit to compare them all", radius, 0);
   place.match = PlaceMatch::found;
-  place.correction = level_correction(guess, best.pose);
+  place.correction = level_correction(guess, guess.inverse() * level * best.pose * T_level_guess);
   return place;
 }
 

@@ -79,6 +79,38 @@ TEST(Relocalise, RefusesPlacesThatLookAlike) {
   }
 }
 
+TEST(Relocalise, FindsThePlaceOnARamp) {
+  const Pose3 level = lost().T_odom_base;
+  for (const Eigen::Vector3d& axis : {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitY().eval()}) {
+    Pose3 truth = level;
+    truth.orientation = truth.orientation * Eigen::AngleAxisd(15 * M_PI / 180, axis);
+    const Pose3 T_truth_level = truth.inverse() * level;
+    PointCloud seen;
+    for (const Eigen::Vector3f& p : lost().points)
+      seen.push_back((T_truth_level * p.cast<double>()).cast<float>());
+    for (const double turn : {-2.6, -1.6, 0.7, 2.0, 3.1}) {
+      const Pose3 guess = beside(truth, 11, 4, turn);
+      SCOPED_TRACE(turn);
+      const auto found = relocalise(before(), seen, guess, 0.1, {.moved = 15.0});
+      ASSERT_TRUE(found.ok()) << found.error().text;
+      EXPECT_EQ(found->match, PlaceMatch::found);
+      const Pose3 corrected = found->correction * guess;
+      EXPECT_LT((corrected.position - truth.position).norm(), 0.05);
+      EXPECT_LT(corrected.orientation.angularDistance(truth.orientation), 0.02);
+    }
+  }
+}
+
+TEST(Relocalise, RefusesAPlaceWhenItCouldNotCompareAllOthers) {
+  const Pose3 guess = beside(lost().T_odom_base, 1.6, 1.2, 0.7);
+  ASSERT_TRUE(relocalise(before(), lost().points, guess, 0.8).ok());
+  for (const std::size_t squares : {1U, 5U, 20U}) {
+    const auto found = relocalise(before(), lost().points, guess, 0.8, {.max_squares = squares});
+    ASSERT_EQ(found.reason(), Reason::not_localised_here) << squares;
+    EXPECT_NE(found.error().text.find("too many"), std::string::npos) << found.error().text;
+  }
+}
+
 TEST(Relocalise, SaysWhatItCannotCompare) {
   EXPECT_EQ(relocalise({}, lost().points, {}, 0.5)->match, PlaceMatch::nothing_stored);
   EXPECT_EQ(relocalise(before(), std::span(lost().points).first(150), lost().T_odom_base, 0.5)->match,
