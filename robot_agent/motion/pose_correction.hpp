@@ -62,12 +62,13 @@ class PoseCorrection {
 
   /// Continues with a stored correction after a restart. `sigma`: of the pose before it, m. `account`: as it
   /// was, where the odometry was not restarted.
-  void restore(const Pose3& T_odom_driver, double sigma, const Account& account = {}) {
+  void restore(const Pose3& T_odom_driver, double sigma, const Account& account) {
     T_odom_driver_ = wanted_ = T_odom_driver;
     sigma_ = sigma;
     account_ = account;
     if (account.instance == 0) account_.before = account_.seen_before = account_.seen = sigma;
   }
+  void restore(const Pose3& T_odom_driver, double sigma) { restore(T_odom_driver, sigma, Account()); }
   /// An operator said where the robot is: sigma counts from here on.
   void reset_sigma() {
     sigma_ = alone_ = account_.before = account_.seen_before = account_.seen = 0.0;

@@ -144,7 +144,7 @@ TEST_F(PlaceOfAnAgent, StaysLostWhenItsSensorsAreRestarted) {
   ASSERT_EQ(bench->ask(*op, CMD_POSE, "", 1, 0), Reason::none);
   bench->run(1s);
   EXPECT_EQ(static_cast<Localisation>(op->state.localisation()), Localisation::ok);
-  EXPECT_LT(op->state.sigma(), 0.1);
+  EXPECT_LT(op->state.sigma(), 100);  // mm
 }
 
 TEST_F(PlaceOfAnAgent, IsFoundAfterItsSensorsWereRestartedWhileItWasLost) {
@@ -159,8 +159,8 @@ TEST_F(PlaceOfAnAgent, IsFoundAfterItsSensorsWereRestartedWhileItWasLost) {
   ASSERT_EQ(bench->ask(*op, CMD_RESTART, "sensors"), Reason::none);
   bench->run(4s);
   EXPECT_EQ(static_cast<Localisation>(op->state.localisation()), Localisation::ok);
-  EXPECT_NEAR(op->state.pose().x(), 0.0, 0.1);
-  EXPECT_LT(op->state.sigma(), 0.3);
+  EXPECT_NEAR(op->state.x(), 0.0, 0.1);
+  EXPECT_LT(op->state.sigma(), 300);  // mm
 }
 
 TEST_F(PlaceOfAnAgent, IsNotKnownBetterAfterARestart) {
