@@ -82,6 +82,11 @@ struct Platform {
     return one;
   }
 
+  /// Where the first lidar's rays begin, base_link, m.
+  Eigen::Vector3d lidar_origin() const {
+    return lidars.empty() ? Eigen::Vector3d(0, 0, lidar_height) : lidars.front().mounting.position();
+  }
+
   bool sideways() const { return drive == Drive::holonomic || drive == Drive::aerial; }
   /// Steepest ground that it drives on, rise per run; stairs of its highest step count.
   double steepest() const {

@@ -38,6 +38,7 @@ LidarConfig read_lidar(const Node& node, const LidarConfig& usual, bool flies) {
   lidar.min_range = node.number("min_range", within(0, 5), lidar.min_range);
   lidar.max_range = node.number("max_range", within(1, 500), lidar.max_range);
   lidar.noise = node.number("noise", within(0, 0.5), lidar.noise);
+  lidar.rosette = node.choice("pattern", {"rings", "rosette"}, lidar.rosette ? 1 : 0) == 1;
   if (lidar.min_range >= lidar.max_range)
     node.fail(Reason::out_of_range, "expected min_range below max_range");
   return lidar;

@@ -22,6 +22,9 @@ struct LidarParams {
 
   /// Elevations of the rings, degrees, rising; empty: evenly from lowest to highest.
   std::vector<double> elevations{};
+  /// The beams of each column are elsewhere within the steps between them, and never twice the same, as those
+  /// of a lidar that scans a rosette (Livox). See SweepJob.
+  bool rosette{false};
   /// One return a column, in the lidar's plane: the nearest of what the rings of that column show not to be
   /// ground.
   bool folded{false};

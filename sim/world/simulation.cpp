@@ -318,11 +318,13 @@ std::shared_ptr<const LidarPattern> Simulation::lidar_of(const Platform& platfor
     params.rings = lidar.rings;
     params.lowest = lidar.lowest;
     params.highest = lidar.highest;
+    params.rosette = lidar.rosette;
   }
   for (const Robot& robot : robots_) {
     const LidarParams& other = robot.lidar->params();
     if (other.rings == params.rings && other.lowest == params.lowest && other.highest == params.highest &&
-        other.elevations == params.elevations && other.folded == params.folded && other.step == params.step)
+        other.elevations == params.elevations && other.folded == params.folded && other.step == params.step &&
+        other.rosette == params.rosette)
       return robot.lidar;
   }
   return std::make_shared<const LidarPattern>(params);

@@ -20,7 +20,9 @@ constexpr double kDustReach = 8.0;     // m: farther dust returns too little lig
 constexpr std::uint64_t kDustSeed = 0x2545f4914f6cdd1dULL;
 constexpr double kWrapped = 4.2949668;  // s: nearly 2^32 ns
 constexpr std::uint64_t kLossSeed = 1, kCoverSeed = 2;
-constexpr double kDustAlbedo = 0.1;  // of what is left of a beam
+constexpr double kGolden = 0.6180339887;  // Spreads the columns of a rosette most evenly.
+constexpr std::size_t kLines = 4;         // Lasers of a rosette.
+constexpr double kDustAlbedo = 0.1;       // of what is left of a beam
 
 /// Albedo of the surface at a place: a fixed pattern of patches.
 double albedo_at(const Eigen::Vector3d& place) {
@@ -133,10 +135,11 @@ const std::vector<std::string>& lost_time_words() {
 std::vector<SweepPoint> SweepJob::trace() const {
   const LidarParams& params = lidar->params();
   const auto& azimuths = lidar->azimuths();
-  const auto& elevations = lidar->elevations();
-  const std::size_t columns = azimuths.size(), rings = elevations.size();
+  const std::size_t columns = azimuths.size(), rings = lidar->elevations().size();
   const std::size_t intervals = T_world_lidar.size() - 1;
-  const double highest = std::max(std::abs(elevations.front().y()), std::abs(elevations.back().y()));
+  const double highest =
+      std::max(std::abs(lidar->elevations().front().y()), std::abs(lidar->elevations().back().y()));
+  // A rosette moves all beams within the step between two of them, another way in each column.
   const double ring_step =
       rings > 1 ? (params.highest - params.lowest) * M_PI / 180.0 / static_cast<double>(rings - 1) : 0.0;
   Receiver receiver(params, errors, 2.0 * M_PI / static_cast<double>(columns), ring_step, seed);
@@ -148,6 +151,8 @@ std::vector<SweepPoint> SweepJob::trace() const {
   points.reserve(lidar->size());
   std::vector<Eigen::Vector3d> directions(rings);
   std::vector<double> ranges(rings), before(rings, VoxelGrid::kNoHit);
+  std::vector<Eigen::Vector2d> elevations = lidar->elevations();
+  double phase = static_cast<double>(seed % 1024) / 1024.0;
   std::vector<BoxTarget> targets;
   std::size_t in_interval = intervals;  // None yet.
   for (std::size_t n = 0; n < columns; ++n) {
@@ -176,6 +181,11 @@ std::vector<SweepPoint> SweepJob::trace() const {
       }
     }
     const Eigen::Vector3d ahead = rotation.col(0) * azimuths[at].x() + rotation.col(1) * azimuths[at].y();
+    if (params.rosette) {
+      phase = std::fmod(phase + kGolden, 1.0);
+      const Eigen::Rotation2Dd shift((phase - 0.5) * ring_step);
+      for (std::size_t k = 0; k < rings; ++k) elevations[k] = shift * lidar->elevations()[k];
+    }
     for (std::size_t k = 0; k < rings; ++k)
       directions[k] = ahead * elevations[k].x() + rotation.col(2) * elevations[k].y();
     world->grid().cast(start, directions, params.max_range, ranges);
@@ -188,19 +198,21 @@ std::vector<SweepPoint> SweepJob::trace() const {
     const auto t = static_cast<float>(when * duration);
     const bool lost = loss && of_loss.chance(loss->share);
     for (std::size_t k = 0; k < rings; ++k) {
-      const Neighbours beam{ranges[k], before[k], k > 0 ? ranges[k - 1] : VoxelGrid::kNoHit};
+      // The number of a laser, which moves over all elevations.
+      const auto ring = static_cast<std::uint16_t>(params.rosette ? (k + n) % kLines : k);
+      const Neighbours beam{ranges[k], params.rosette ? VoxelGrid::kNoHit : before[k],
+                            k > 0 ? ranges[k - 1] : VoxelGrid::kNoHit};
       Receiver::Return got = receiver.measure(beam, sensor, directions[k]);
       if (lost) {
-        points.push_back({0, 0, 0, 0, lost_time(loss->time, t), static_cast<std::uint16_t>(k), 0});
+        points.push_back({0, 0, 0, 0, lost_time(loss->time, t), ring, 0});
         continue;
       }
       if (covered) got = {of_cover.uniform(0.0, kCover), 255.0 * kBrightest};
       if (!(got.range >= nearest && got.range <= params.max_range)) continue;
       const double flat = got.range * elevations[k].x();
-      points.push_back({static_cast<float>(flat * azimuths[at].x()),
-                        static_cast<float>(flat * azimuths[at].y()),
-                        static_cast<float>(got.range * elevations[k].y()), static_cast<float>(got.intensity),
-                        t, static_cast<std::uint16_t>(k), 0});
+      points.push_back(
+          {static_cast<float>(flat * azimuths[at].x()), static_cast<float>(flat * azimuths[at].y()),
+           static_cast<float>(got.range * elevations[k].y()), static_cast<float>(got.intensity), t, ring, 0});
     }
     before.swap(ranges);
   }

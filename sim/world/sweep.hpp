@@ -15,7 +15,7 @@ struct SweepPoint {
   float x{}, y{}, z{};     ///< m
   float intensity{};       ///< Reflectivity, [0, 255].
   float t{};               ///< Time since the sweep's begin, s.
-  std::uint16_t ring{};    ///< Beam, 0 is the lowest.
+  std::uint16_t ring{};    ///< Beam, 0 is the lowest; of a rosette: the laser, 0 to 3.
   std::uint16_t unused{};  ///< Keeps the layout free of holes.
   Eigen::Vector3f position() const { return {x, y, z}; }
 };
@@ -63,7 +63,7 @@ struct SweepJob {
 
   static constexpr double kCover = 0.3;  ///< m
   /// Traces each column from the pose at its own time; it begins behind and turns counter-clockwise. At most
-  /// lidar->size() points, column by column, in each from the lowest ring up; beams without return are left
+  /// lidar->size() points, column by column, in each from the lowest beam up; beams without return are left
   /// out, but for those of lost columns.
   std::vector<SweepPoint> trace() const;
 };

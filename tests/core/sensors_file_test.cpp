@@ -47,6 +47,8 @@ TEST(SensorsFile, a_platform_may_name_its_sensors) {
   EXPECT_EQ(lidar.min_range, 0.4);
   EXPECT_EQ(lidar.max_range, 30);
   EXPECT_EQ(lidar.noise, 0.03);
+  EXPECT_FALSE(lidar.rosette);
+  EXPECT_TRUE(load("sensors: {lidar: {x: 0, y: 0, z: 1, pattern: rosette}}\n")->lidar().rosette);
   EXPECT_EQ(p->lidar_height, 0.5);
   EXPECT_EQ(p->lidar_rings, 32);
   ASSERT_TRUE(p->imu);
@@ -100,6 +102,7 @@ TEST(SensorsFile, wrong_entries_name_the_line) {
             "min_range below max_range"},
         Row{"lidar_height: 1\nsensors:\n  lidar: {x: 0, y: 0, z: 1}\n",
             ":9: lidar_height: expected either lidar_height or a lidar under sensors"},
+        Row{"sensors: {lidar: {x: 0, y: 0, z: 1, pattern: petals}}\n", "rosette"},
         Row{"sensors:\n  imu: {x: 0, y: 0, z: 1}\n", "'lidar_height' is missing"},
         Row{"lidar_height: 1\nmax_tilt: 2\n", ":10: max_tilt: expected a number in (0, 1.5]"}}) {
     const auto p = load(row.text);

@@ -260,6 +260,30 @@ TEST(Sweep, EachColumnIsTracedFromThePoseAtItsOwnTime) {
   EXPECT_LT(last, 0.1f);
 }
 
+TEST(Sweep, LinesOfARosetteAreNoElevationsAndNoSweepIsLikeTheOneBefore) {
+  Platform platform = wheeled();
+  LidarConfig lidar = platform.lidar();
+  lidar.rosette = true;
+  platform.lidars = {lidar};
+  Simulation s = make(large_hall(), {{"r1", platform, {0, 0, 0}}}, 0.0);
+  drive(s, {}, 0.3);
+  const auto elevation = [](const SweepPoint& p) { return std::atan2(p.z, std::hypot(p.x, p.y)); };
+  const auto first = s.sweep(0).trace();
+  std::array<float, 4> low{}, high{};
+  for (const SweepPoint& p : first) {
+    ASSERT_LT(p.ring, 4);
+    low[p.ring] = std::min(low[p.ring], elevation(p));
+    high[p.ring] = std::max(high[p.ring], elevation(p));
+  }
+  for (std::size_t line = 0; line < 4; ++line) EXPECT_GT(high[line] - low[line], 0.4F) << "rad";
+  drive(s, {}, 0.1);
+  const auto second = s.sweep(0).trace();
+  std::size_t same = 0;
+  for (std::size_t n = 0; n < std::min(first.size(), second.size()); ++n)
+    same += std::abs(elevation(first[n]) - elevation(second[n])) < 1e-5F;
+  EXPECT_LT(same, first.size() / 20);
+}
+
 TEST(Sweep, MountErrorAndNoiseAreReproducibleAndBounded) {
   const auto mount = [](double noise, std::uint64_t seed) {
     Simulation s = make(large_hall(), {{"r1", wheeled(), {0, 0, 0}}}, noise, seed);
