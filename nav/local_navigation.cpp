@@ -30,12 +30,12 @@ LocalNavigation::LocalNavigation(const Platform& platform, const TerrainParams& 
   obstacles_.reserve(std::max<std::size_t>(terrain_.max_cells(), AirMap::kMax) + kMaxPredicted);
 }
 
-void LocalNavigation::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+void LocalNavigation::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s) {
   if (air_)
-    air_->add_scan(points, body, stamp_s);
+    air_->add_scan(scan, body, stamp_s);
   else
-    terrain_.add_scan(points, body, stamp_s);
-  tracker_.look(points, body, stamp_s);
+    terrain_.add_scan(scan, body, stamp_s);
+  tracker_.look(scan, body, stamp_s);
   has_scan_ = true;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/geometry/scan_points.hpp"
 #include "nav/planners/make_planner.hpp"
 #include "nav/recovery/escape.hpp"
 #include "nav/terrain/air_map.hpp"
@@ -29,7 +30,7 @@ class LocalNavigation {
   LocalNavigation(const Platform& platform, const TerrainParams& terrain, PlannerFactory planner);
 
   /// See TerrainMap::add_scan.
-  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
   /// Plans over the terrain seen so far; see Planner::plan. When the planner finds no path to a goal and less
   /// than Escape::kClear is free beside the body, the plan leads out of there at Escape::kSpeed; when that
   /// fails too, its reason is start_in_collision. Before the first scan no space is known to be free: the

@@ -286,11 +286,10 @@ void Agent::Impl::open_map() {
           else
             context->notifier->to_all(Severity::info, "map_stored", Reason::none, params.name + ": " + text);
         });
-  e.map = std::make_unique<MapKeeper>(
-      MapKeeperParams{.robot = params.name,
-                      .seed = Random(params.seed).fork(kMapSalt).next(),
-                      .origin = params.platform.lidar().mounting.position().cast<float>()},
-      std::move(disk));
+  e.map = std::make_unique<MapKeeper>(MapKeeperParams{.robot = params.name,
+                                                      .seed = Random(params.seed).fork(kMapSalt).next(),
+                                                      .origin = params.platform.lidar_origin()},
+                                      std::move(disk));
   const LoadedMap loaded = e.map->load();
   if (const std::string lost = loaded.text(); !lost.empty())
     e.notifier->to_all(Severity::error, "map_damaged", loaded.reason, params.name + ": " + lost);

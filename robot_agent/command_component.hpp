@@ -215,6 +215,7 @@ class Agent::CommandComponent : public Component {
   std::optional<Time> holder_heard_{};  ///< First heartbeat of the holder since the start.
   std::optional<Time> jump_reported_{};
   std::optional<Time> searched_{};  ///< When a lost robot began to search its place last.
+  bool not_searched_{};             ///< It may be too far away to search; that was reported.
   PlaceAgreement found_{};          ///< Of the results of the search so far.
   int comparisons_{};               ///< Scans that did not fit the stored keyframes.
   RivalWatch rivals_;

@@ -95,7 +95,7 @@ void Agent::CommandComponent::compare_place(const std::shared_ptr<const Scan>& s
   compute(
       {.name = "place", .modelled = kRecognition, .deadline = 5s},
       [scan, keyframes = std::move(keyframes), recognise] {
-        return perception::recognise(keyframes, scan->points, scan->located, recognise);
+        return perception::recognise(keyframes, scan->lasting(), scan->located, recognise);
       },
       [this, epoch = frames_.odom_epoch()](const Result<perception::RecognisedPlace>& found) {
         if (context_.place.pending() && epoch == frames_.odom_epoch()) place_compared(found);
@@ -126,17 +126,23 @@ void Agent::CommandComponent::place_compared(const Result<perception::Recognised
 
 void Agent::CommandComponent::search_place(const std::shared_ptr<const Scan>& scan) {
   constexpr Duration kAgain = 1s;
-  if (!correction_.lost()) return found_.reset();
+  if (!correction_.lost()) {
+    not_searched_ = false;
+    return found_.reset();
+  }
   if (!context_.place.known() || (searched_ && now() - *searched_ < kAgain)) return;
   perception::RelocaliseParams search{.moved = correction_.moved(), .planar = scan->planar};
   search.noise = std::max(search.noise, params_.platform.lidar().noise);
   const double sigma = correction_.sigma_seen();
-  if (search.moved + 3.0 * sigma > perception::kMaxRelocaliseRadius) return;
+  if (search.moved + 3.0 * sigma > perception::kMaxRelocaliseRadius) {
+    if (!std::exchange(not_searched_, true)) notices_.place_not_searched(perception::kMaxRelocaliseRadius);
+    return;
+  }
   searched_ = now();
   compute(
       {.name = "search place", .modelled = kSearch, .deadline = 5s},
       [scan, keyframes = context_.keyframes->of(frames_.odom_epoch()), sigma, search] {
-        return perception::relocalise(keyframes, scan->points, scan->located, sigma, search);
+        return perception::relocalise(keyframes, scan->lasting(), scan->located, sigma, search);
       },
       [this, epoch = frames_.odom_epoch(), jumps = scan->jumps, guess = scan->located,
        sigma](const Result<perception::RecognisedPlace>& found) {
@@ -207,6 +213,7 @@ void Agent::CommandComponent::add_waiting_scan() {
   scan->points = std::move(*waiting.points);
   scan->planar = waiting.planar;
   scan->isolated = std::move(waiting.isolated);
+  scan->parts = std::move(waiting.parts);
   const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
   // Without a common clock the newest pose is the best guess. With another clock one of that stamp is of long
   // ago.
@@ -217,6 +224,7 @@ void Agent::CommandComponent::add_waiting_scan() {
   const auto located = waiting.odometry ? correction_.located(*waiting.odometry) : std::nullopt;
   scan->located = located.value_or(scan->body);
   scan->jumps = correction_.jumps();
+  scan->movers = navigation_.movers(now());
   if (context_.place.waits() && paired) compare_place(scan);
   if (waiting.odometry && located) search_place(scan);
   if (waiting.odometry) watch_grip(*waiting.odometry, now());
@@ -229,7 +237,7 @@ void Agent::CommandComponent::make_keyframe(const std::shared_ptr<const Scan>& s
   compute(
       {.name = "make keyframe", .modelled = kKeyframe, .latest_only = true},
       [scan, epoch = frames_.odom_epoch()] {
-        return perception::make_keyframe(scan->points, scan->located, epoch, scan->planar);
+        return perception::make_keyframe(scan->lasting(), scan->located, epoch, scan->planar);
       },
       [this](Result<perception::Keyframe> keyframe) {
         if (keyframe) context_.keyframes->add(std::move(*keyframe));
@@ -297,7 +305,7 @@ double Agent::CommandComponent::place_sigma() const {
 void Agent::CommandComponent::watch_grip(const OdometryReport& report, Time at) {
   if (std::exchange(modes_seen_, behaviour_.modes_begun()) != behaviour_.modes_begun()) grip_.begin_mode();
   const auto event = grip_.note(report.wheels_slip, report.T_local_base.position, at);
-  if (event == GripWatch::Event::slips) notices_.wheels_slip();
+  if (event == GripWatch::Event::slips) notices_.wheels_slip(params_.platform.flies());
   if (event != GripWatch::Event::stuck || !behaviour_.mode().autonomous()) return;
   behaviour_.hold(Reason::stuck, at);
   notices_.stuck();

@@ -82,8 +82,9 @@ void Explorer::clear() {
   ever_ = false;
 }
 
-void Explorer::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body) {
-  map_.add_scan(points, sensor_, body);
+void Explorer::add_scan(const ScanPoints& scan, const Pose3& body) {
+  scan.each_part(sensor_,
+                 [&](auto points, const Eigen::Vector3d& origin) { map_.add_scan(points, origin, body); });
   ++scans_;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/config/platform.hpp"
+#include "core/geometry/scan_points.hpp"
 #include "nav/explore/coverage_map.hpp"
 #include "nav/explore/frontiers.hpp"
 
@@ -65,7 +66,7 @@ class Explorer {
   explicit Explorer(const Platform& platform, const ExploreParams& params = {});
 
   /// Takes a scan. `points`: base_link, m; `body`: base_link, on the ground.
-  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body);
+  void add_scan(const ScanPoints& scan, const Pose3& body);
   /// Begins an exploration: what was seen stays seen, and places that were blocked may be tried again.
   void begin();
   /// To be called after scans, about once a second and when a goal is blocked. `place`: the robot on the

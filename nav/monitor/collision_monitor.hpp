@@ -66,6 +66,8 @@ class CollisionMonitor {
   ObstacleDetector make_detector() const;
   /// Takes what the newest scan shows; null is ignored.
   void see(std::shared_ptr<const DetectedObstacles> seen);
+  /// What the newest scan showed.
+  const DetectedObstacles& seen() const { return *seen_; }
   /// Sets further places, odometry frame, m, that the body must not touch, until the next call. They bind the
   /// check of each velocity. At most NearPoints::kMax count.
   void set_border(std::span<const Eigen::Vector2f> places);

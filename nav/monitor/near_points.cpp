@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "nav/geometry/planar_transform.hpp"
 
@@ -112,11 +113,15 @@ NearPoints::Tilt NearPoints::tilt_of(const Pose3& body) const {
   return tilt;
 }
 
-NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, const Tilt& tilt) {
+NearPoints::Fan NearPoints::sort_in(const ScanPoints& scan, const Tilt& tilt) {
   const auto top = static_cast<float>(limits_.headroom);
-  const auto height = static_cast<float>(platform_.lidar_height);
+  const auto points = scan.all();
   const Eigen::Matrix3f& R = tilt.R_level_base;
-  const float lidar = R(2, 2) * height;
+  // Of the lowest lidar, above base_link.
+  float lidar = std::numeric_limits<float>::infinity();
+  scan.each_part(platform_.lidar_origin(), [&](auto, const Eigen::Vector3d& origin) {
+    lidar = std::min(lidar, R.row(2).dot(origin.cast<float>()));
+  });
   const auto step = static_cast<float>(limits_.obstacle);
   const float slope = tilt.slope;
   const auto stairs = static_cast<float>(limits_.slope);
@@ -134,14 +139,17 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
   std::fill(upper_.begin(), upper_.end(), -kNotSeen);
   std::fill(highest_.begin(), highest_.end(), -1e9f);
   Fan fan{};
-  for (const Eigen::Vector3f& raw : points) {
+  fan.lidar = scan.origin(platform_.lidar_origin());
+  const Eigen::Vector3f from = fan.lidar.cast<float>();
+  for (const Eigen::Vector3f& raw : scan.first()) {
     // The rays belong to the lidar, which tilts with the body.
-    const float range = std::sqrt(raw.x() * raw.x() + raw.y() * raw.y());
-    if (range > 0.1f) {  // False when it is not a number.
-      const float rise = (raw.z() - height) / range;
-      fan.lowest = std::min(fan.lowest, rise);
-      fan.highest = std::max(fan.highest, rise);
-    }
+    const Eigen::Vector3f ray = raw - from;
+    const float range = std::sqrt(ray.x() * ray.x() + ray.y() * ray.y());
+    if (!(range > 0.1f)) continue;  // True when it is not a number.
+    fan.lowest = std::min(fan.lowest, ray.z() / range);
+    fan.highest = std::max(fan.highest, ray.z() / range);
+  }
+  for (const Eigen::Vector3f& raw : points) {
     const Eigen::Vector3f p = R * raw;
     if (!inside(p)) continue;
     const std::size_t cell = coarse(p.x(), p.y());
@@ -188,18 +196,18 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
 }
 
 bool NearPoints::hidden(const Eigen::Vector3d& local, const Fan& fan) const {
-  const auto range = static_cast<float>(std::hypot(local.x(), local.y()));
-  if (range > reach_) return false;
+  if (static_cast<float>(std::hypot(local.x(), local.y())) > reach_) return false;
+  const Eigen::Vector3d ray = local - fan.lidar;
+  const auto range = static_cast<float>(std::hypot(ray.x(), ray.y()));
   if (range < static_cast<float>(params_.shortest)) return true;
-  const float rise = static_cast<float>(local.z() - platform_.lidar_height) / range;
+  const float rise = static_cast<float>(ray.z()) / range;
   const float edge = kEdge * (fan.highest - fan.lowest) - kLevel;
   return rise < fan.lowest + edge || rise > fan.highest - edge;
 }
 
-bool NearPoints::seen_past(const Eigen::Vector3d& local, const Pose3& body,
+bool NearPoints::seen_past(const Eigen::Vector3d& local, const Pose3& body, const Fan& fan,
                            const UprightRangeImage& seen) const {
-  const Eigen::Vector3f d =
-      (body.orientation * (local - Eigen::Vector3d(0, 0, platform_.lidar_height))).cast<float>();
+  const Eigen::Vector3f d = (body.orientation * (local - fan.lidar)).cast<float>();
   return seen.saw_past(Ray::to(d.x(), d.y(), d.z()), kPast);
 }
 
@@ -215,14 +223,14 @@ void NearPoints::remember(const Pose3& body, const Tilt& tilt, const Fan& fan, d
     const Eigen::Vector3d level(at.x(), at.y(), place.z - body.position.z());
     const Eigen::Vector3d local = tilt.R_level_base.cast<double>().transpose() * level;
     // An obstacle nearer than the lidar's minimum range would block the rays that went past.
-    if (again || (hidden(local, fan) && !seen_past(local, body, seen))) remembered_.push_back(place);
+    if (again || (hidden(local, fan) && !seen_past(local, body, fan, seen))) remembered_.push_back(place);
   }
 }
 
-void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
+void NearPoints::take(const ScanPoints& scan, const Pose3& body, double stamp_s,
                       const UprightRangeImage& seen) {
   const Tilt tilt = tilt_of(body);
-  const Fan fan = sort_in(points, tilt);
+  const Fan fan = sort_in(scan, tilt);
   remember(body, tilt, fan, stamp_s, seen);
   std::swap(places_, remembered_);
   // Nearest first, in case there are more than the maximum.

@@ -7,6 +7,7 @@
 
 #include "core/config/traversability.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/geometry/scan_points.hpp"
 #include "nav/geometry/footprint.hpp"
 #include "nav/tracking/upright_range_image.hpp"
 
@@ -43,10 +44,8 @@ class NearPoints {
   /// `reach`: radius around base_link, m, (0, 4].
   NearPoints(const Platform& platform, double reach, const NearPointsParams& params = {});
 
-  /// Takes a scan: points in base_link, m; pose of the body in the odometry frame; time, s; and its range
-  /// image.
-  void take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
-            const UprightRangeImage& seen);
+  /// Takes a scan; pose of the body in the odometry frame; time, s; and the range image of the scan.
+  void take(const ScanPoints& scan, const Pose3& body, double stamp_s, const UprightRangeImage& seen);
   /// Forgets all places.
   void clear() { places_.clear(); }
   std::span<const Place> places() const { return {places_.data(), places_.size()}; }
@@ -60,8 +59,9 @@ class NearPoints {
     float x, y, z;
     std::uint16_t count;
   };
-  /// Elevation range of the newest scan's rays, rise per metre.
+  /// Elevation range of the rays of the newest scan's first lidar, rise per metre.
   struct Fan {
+    Eigen::Vector3d lidar{0, 0, 0};  ///< base_link, m.
     float lowest{1e9f}, highest{-1e9f};
   };
 
@@ -74,14 +74,15 @@ class NearPoints {
     float slope{};               ///< Maximum rise of the ground per metre outside of the footprint.
   };
   Tilt tilt_of(const Pose3& body) const;
-  Fan sort_in(std::span<const Eigen::Vector3f> points, const Tilt& tilt);
+  Fan sort_in(const ScanPoints& scan, const Tilt& tilt);
   /// Whether the ground was seen one step before `p`: flat, at most `highest`, and at most `rise` lower.
   bool tread_leads_to(const Eigen::Vector3f& p, float range, float highest, float rise) const;
   bool seen_again(const Eigen::Vector2f& local) const;
   void remember(const Pose3& body, const Tilt& tilt, const Fan& fan, double stamp_s,
                 const UprightRangeImage& seen);
   bool hidden(const Eigen::Vector3d& local, const Fan& fan) const;
-  bool seen_past(const Eigen::Vector3d& local, const Pose3& body, const UprightRangeImage& seen) const;
+  bool seen_past(const Eigen::Vector3d& local, const Pose3& body, const Fan& fan,
+                 const UprightRangeImage& seen) const;
 
   Platform platform_;
   NearPointsParams params_;

@@ -20,10 +20,9 @@ ObstacleDetector::ObstacleDetector(const Platform& platform, double reach, const
   detected_.movers.reserve(Tracker::kMax);
 }
 
-const DetectedObstacles& ObstacleDetector::look(std::span<const Eigen::Vector3f> points, const Pose3& body,
-                                                double stamp_s) {
-  tracker_.look(points, body, stamp_s);
-  near_.take(points, body, stamp_s, tracker_.newest());
+const DetectedObstacles& ObstacleDetector::look(const ScanPoints& scan, const Pose3& body, double stamp_s) {
+  tracker_.look(scan, body, stamp_s);
+  near_.take(scan, body, stamp_s, tracker_.newest());
   detected_.places.assign(near_.places().begin(), near_.places().end());
   detected_.movers.assign(tracker_.movers().begin(), tracker_.movers().end());
   detected_.stamp_s = stamp_s;

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/geometry/scan_points.hpp"
 #include "nav/monitor/near_points.hpp"
 #include "nav/tracking/tracker.hpp"
 
@@ -28,9 +29,9 @@ class ObstacleDetector {
   ObstacleDetector(const Platform& platform, double reach, const NearPointsParams& points = {},
                    const TrackerParams& tracker = {});
 
-  /// Takes the newest scan: points in base_link, m; pose of the body in the odometry frame; time of arrival,
+  /// Takes the newest scan; pose of the body in the odometry frame; time of arrival,
   /// s, not decreasing. The result is valid until the next call. Nothing is allocated after the first calls.
-  const DetectedObstacles& look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  const DetectedObstacles& look(const ScanPoints& scan, const Pose3& body, double stamp_s);
   /// Forgets all scans, for example after a jump of the odometry.
   void clear();
 

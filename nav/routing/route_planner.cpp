@@ -19,10 +19,9 @@ RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
       profile_(platform, params),
       graph_(map_, platform, params) {}
 
-void RoutePlanner::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
-                            bool search) {
+void RoutePlanner::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s, bool search) {
   // On stairs one step would be registered to another, so there the odometry's heights are used.
-  profile_.add(points, platform_.stairs ? body : registration_.apply(points, body, map_), map_);
+  profile_.add(scan, platform_.stairs ? body : registration_.apply(scan.all(), body, map_), map_);
   map_.expire(stamp_s);
   for (int i = 0; search && i < params_.rebuilds; ++i) {
     const int index = map_.next_dirty();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geometry/pose.hpp"
+#include "core/geometry/scan_points.hpp"
 #include "nav/routing/find_passage.hpp"
 #include "nav/routing/ground_registration.hpp"
 #include "nav/routing/route_graph.hpp"
@@ -22,12 +23,11 @@ class RoutePlanner {
   RoutePlanner(const RoutePlanner&) = delete;
   RoutePlanner& operator=(const RoutePlanner&) = delete;
 
-  /// Takes a scan. `points`: base_link, m, not finite where there was no return. `body`: base_link, which is
+  /// Takes a scan; points are not finite where there was no return. `body`: base_link, which is
   /// on the ground, at the scan's time. `stamp_s`: that time, s, not decreasing. `search`: a search will
   /// follow soon, so up to RouteParams::rebuilds tiles of the graph are updated now; a search updates the
   /// remaining tiles as it reaches them.
-  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
-                bool search = true);
+  void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s, bool search = true);
   /// Adds known ground, or an obstacle that rises `obstacle_height` metres above the ground, m, from a map.
   /// An obstacle overrides all other evidence of its cell. Call finish() afterwards.
   void set_ground(const Eigen::Vector3d& place);

@@ -62,7 +62,8 @@ float ScanProfile::most_wrong(const Platform& platform) {
 
 void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& body) {
   const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
-  const Eigen::Vector3f at = body.position.cast<float>();
+  const Eigen::Vector3f foot(from_.lidar.x(), from_.lidar.y(), 0);
+  const Eigen::Vector3f at = (body * foot.cast<double>()).cast<float>();
   const float half_length = static_cast<float>(platform_.length / 2) + 0.05f;
   const float half_width = static_cast<float>(platform_.width / 2) + 0.05f;
   const float most = static_cast<float>(params_.range);
@@ -71,7 +72,7 @@ void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& bod
   begin_.assign(kDirections + 1, 0);
   for (const Eigen::Vector3f& p : points) {
     if (!p.allFinite() || (std::abs(p.x()) < half_length && std::abs(p.y()) < half_width)) continue;
-    const Eigen::Vector3f offset = turn * p;
+    const Eigen::Vector3f offset = turn * (p - foot);
     const float range = std::sqrt(offset.x() * offset.x() + offset.y() * offset.y());
     if (range > most) continue;
     const int d = static_cast<int>((bearing(offset.y(), offset.x()) + static_cast<float>(M_PI)) *
@@ -100,7 +101,7 @@ void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& bod
 // looks down on, like a ramp seen from the side, where a robot may drive.
 bool ScanProfile::is_face(std::span<const Return> returns, std::size_t which) const {
   constexpr float kBelow = 0.05f;  // m below the lidar: it cannot look down on higher ground.
-  return returns[which].z > sensor_.z() - kBelow || is_obstacle(returns, which);
+  return returns[which].z > from_.sensor.z() - kBelow || is_obstacle(returns, which);
 }
 
 // Whether other returns are right above or below it.
@@ -119,8 +120,8 @@ bool ScanProfile::is_obstacle(std::span<const Return> returns, std::size_t which
 void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit) {
   hit = {};
   const std::size_t first = pieces_.size();
-  float z = ground_, at = 0.0f;  // The last ground.
-  float z_before = ground_;      // The ground before it.
+  float z = from_.ground, at = 0.0f;  // The last ground.
+  float z_before = from_.ground;      // The ground before it.
   const Return* last_ground = nullptr;
   bool ended = false;
   for (const Return& r : returns) {
@@ -129,7 +130,7 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
     // Before the first return the ground continues the plane under the body, or becomes level.
     const bool begins = !last_ground && !ended;
     if (const float on = ground_at(r.x, r.y); begins)
-      z = std::abs(r.z - on) <= step_ && !is_obstacle(returns, which) ? on : ground_;
+      z = std::abs(r.z - on) <= step_ && !is_obstacle(returns, which) ? on : from_.ground;
     const float rise = r.z - z;
     // The foot of an obstacle was taken for rising ground: the next return is right above it.
     const bool foot = !ended && last_ground && r.range - at < kStack && z - z_before > step_ &&
@@ -147,23 +148,23 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
         if (pieces_.size() > first) pieces_.back().z_to = base;
       }
       map.see_obstacle(r.x, r.y, base, r.z - base);
-      pieces_.push_back({at, r.range - kRouteCellF, begins ? ground_ : base, base, r.z});
+      pieces_.push_back({at, r.range - kRouteCellF, begins ? from_.ground : base, base, r.z});
       hit = {r.range, r.x, r.y, base, r.z - base};
       z = base;
       ended = true;
     } else if (rise < -(drop_ + slope_ * run)) {
       // There is no ground where the ray passed the ground's height. A ray over ground that rose above the
       // lidar never does.
-      if (z >= sensor_.z()) return;
-      const float share = (sensor_.z() - z) / (sensor_.z() - r.z);
+      if (z >= from_.sensor.z()) return;
+      const float share = (from_.sensor.z() - z) / (from_.sensor.z() - r.z);
       const float there = share * r.range;
       if (there > std::max(at, kFirst)) {
-        map.see_obstacle(sensor_.x() + share * (r.x - sensor_.x()), sensor_.y() + share * (r.y - sensor_.y()),
-                         z, 0.02f);
+        map.see_obstacle(from_.sensor.x() + share * (r.x - from_.sensor.x()),
+                         from_.sensor.y() + share * (r.y - from_.sensor.y()), z, 0.02f);
       }
       return;
     } else {
-      pieces_.push_back({at, r.range, begins ? ground_ : z, r.z, r.z});
+      pieces_.push_back({at, r.range, begins ? from_.ground : z, r.z, r.z});
       z_before = z;
       z = r.z;
       at = r.range;
@@ -217,8 +218,9 @@ void ScanProfile::list_sectors() {
 
 void ScanProfile::write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const {
   const auto sector = static_cast<std::size_t>(direction % kQuarter);
-  const int turns = direction / kQuarter + 2;                    // Quarter turns: direction 0 is -x.
-  const int cx = route_cell(at_.x()), cy = route_cell(at_.y());  // Ranges are from the body's centre.
+  const int turns = direction / kQuarter + 2;  // Quarter turns: direction 0 is -x.
+  const int cx = route_cell(from_.at.x()),
+            cy = route_cell(from_.at.y());  // Ranges are from the lidar's foot.
   std::size_t i = first_[sector];
   for (const Piece& p : pieces) {
     const float run = std::max(p.to - p.from, 1e-3f);
@@ -229,7 +231,7 @@ void ScanProfile::write_free(int direction, std::span<const Piece> pieces, Surfa
       if (turns & 2) dx = -dx, dy = -dy;
       const float r = quarter_[i].range;
       const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
-      const float ray = sensor_.z() + (p.ray_z - sensor_.z()) * r / std::max(p.to, r);
+      const float ray = from_.sensor.z() + (p.ray_z - from_.sensor.z()) * r / std::max(p.to, r);
       const bool there = p.to - r < kRouteCellF;  // At a return, or at the foot of an obstacle.
       map.see_free(cx + dx, cy + dy, z, std::max(0.0f, ray - z),
                    there ? SurfaceMap::Seen::measured : SurfaceMap::Seen::between);
@@ -238,7 +240,8 @@ void ScanProfile::write_free(int direction, std::span<const Piece> pieces, Surfa
 }
 
 float ScanProfile::ground_at(double x, double y) const {
-  return ground_ + gradient_.dot(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) - at_);
+  return from_.ground +
+         gradient_.dot(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) - from_.at);
 }
 
 void ScanProfile::stand(const Pose3& body, SurfaceMap& map) const {
@@ -253,26 +256,44 @@ void ScanProfile::stand(const Pose3& body, SurfaceMap& map) const {
                      SurfaceMap::Seen::stood_on);
 }
 
-void ScanProfile::add(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map) {
-  sensor_ = (body * Eigen::Vector3d(0, 0, platform_.lidar_height)).cast<float>();
-  at_ = body.position.head<2>().cast<float>();
-  ground_ = static_cast<float>(body.position.z());
-  const Eigen::Vector3f up = (body.orientation * Eigen::Vector3d::UnitZ()).cast<float>();
-  gradient_ = up.z() > 0.5f ? Eigen::Vector2f(-up.x() / up.z(), -up.y() / up.z()) : Eigen::Vector2f(0, 0);
-  map.begin_scan(body.position.x(), body.position.y());
+ScanProfile::Viewpoint ScanProfile::viewpoint(const Eigen::Vector3d& lidar, const Pose3& body) {
+  const Eigen::Vector3d foot = body * Eigen::Vector3d(lidar.x(), lidar.y(), 0);
+  return {lidar.cast<float>(), (body * lidar).cast<float>(), foot.head<2>().cast<float>(),
+          static_cast<float>(foot.z())};
+}
+
+void ScanProfile::walk_all(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map,
+                           Ends& ends) {
   sort(points, body);
-  stand(body, map);
-  // All obstacles first, so that a neighbouring ray does not free an occupied cell.
-  pieces_.clear();
-  std::array<std::size_t, kDirections + 1> first{};
   for (std::size_t d = 0; d < kDirections; ++d) {
     const auto from = static_cast<std::size_t>(begin_[d]), to = static_cast<std::size_t>(begin_[d + 1]);
     walk(std::span(sorted_).subspan(from, to - from), map, hits_[d]);
-    first[d + 1] = pieces_.size();
+    ends[d] = pieces_.size();
   }
   close_gaps(map);
-  for (std::size_t d = 0; d < kDirections; ++d)
-    write_free(static_cast<int>(d), std::span(pieces_).subspan(first[d], first[d + 1] - first[d]), map);
+}
+
+void ScanProfile::add(const ScanPoints& scan, const Pose3& body, SurfaceMap& map) {
+  const Eigen::Vector3d usual = platform_.lidar_origin();
+  from_ = viewpoint(scan.origin(usual), body);
+  const Eigen::Vector3f up = (body.orientation * Eigen::Vector3d::UnitZ()).cast<float>();
+  gradient_ = up.z() > 0.5f ? Eigen::Vector2f(-up.x() / up.z(), -up.y() / up.z()) : Eigen::Vector2f(0, 0);
+  map.begin_scan(body.position.x(), body.position.y());
+  stand(body, map);
+  // All obstacles first, so that a neighbouring ray does not free an occupied cell.
+  pieces_.clear();
+  parts_.clear();
+  scan.each_part(usual, [&](auto points, const Eigen::Vector3d& lidar) {
+    from_ = viewpoint(lidar, body);
+    Part& part = parts_.emplace_back(Part{from_, {}});
+    walk_all(points, body, map, part.ends);
+  });
+  std::size_t begin = 0;
+  for (const Part& part : parts_) {
+    from_ = part.from;
+    for (std::size_t d = 0; d < kDirections; begin = part.ends[d++])
+      write_free(static_cast<int>(d), std::span(pieces_).subspan(begin, part.ends[d] - begin), map);
+  }
 }
 
 }  // namespace adit::nav

@@ -7,6 +7,7 @@
 #include "core/config/platform.hpp"
 #include "core/config/traversability.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/geometry/scan_points.hpp"
 #include "nav/routing/surface_map.hpp"
 
 namespace adit::nav {
@@ -24,9 +25,9 @@ class ScanProfile {
   /// m.
   static float most_wrong(const Platform& platform);
 
-  /// Adds a scan to the map. `points`: base_link, m, not finite or on the robot itself where there was no
-  /// return. `body`: map frame.
-  void add(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map);
+  /// Adds a scan to the map; points are not finite or on the robot itself where there was no return.
+  /// `body`: map frame.
+  void add(const ScanPoints& scan, const Pose3& body, SurfaceMap& map);
 
  private:
   ScanProfile(const Platform& platform, const RouteParams& params, const Traversability& limits);
@@ -43,11 +44,29 @@ class ScanProfile {
   struct Hit {
     float range{0}, x{0}, y{0}, base{0}, obstacle_height{0};
   };
-  /// A cell relative to the sensor's cell.
+  /// A cell relative to the cell of the lidar's foot.
   struct SectorCell {
     std::int16_t dx, dy;
     float range;  ///< Of its centre, m.
   };
+  /// From where a lidar looks.
+  struct Viewpoint {
+    Eigen::Vector3f lidar{0, 0, 0};   ///< base_link, m.
+    Eigen::Vector3f sensor{0, 0, 0};  ///< The same place in the map, m.
+    /// Its foot, map frame, m: where a line along the body's z through the lidar meets the plane of
+    /// base_link, which is the ground. Ranges and directions are from there.
+    Eigen::Vector2f at{0, 0};
+    float ground{0};  ///< Height of the foot, m.
+  };
+  /// Of each direction, the end of its pieces; they begin where those of the direction before end.
+  using Ends = std::array<std::size_t, kDirections>;
+  struct Part {
+    Viewpoint from;
+    Ends ends;
+  };
+  static Viewpoint viewpoint(const Eigen::Vector3d& lidar, const Pose3& body);
+  /// The obstacles that one lidar saw from from_, and the free pieces before them.
+  void walk_all(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map, Ends& ends);
   void sort(std::span<const Eigen::Vector3f> points, const Pose3& body);
   void walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit);
   bool is_obstacle(std::span<const Return> returns, std::size_t which) const;
@@ -62,9 +81,9 @@ class ScanProfile {
   Platform platform_;
   RouteParams params_;
   float clear_, step_, drop_, slope_;
-  Eigen::Vector3f sensor_{0, 0, 0};
-  Eigen::Vector2f at_{0, 0}, gradient_{0, 0};  ///< Position of the body, and gradient of the ground under it.
-  float ground_{0};                            ///< Height under the body, m.
+  Viewpoint from_{};                ///< Of the lidar whose returns are read.
+  Eigen::Vector2f gradient_{0, 0};  ///< Of the ground under the body.
+  std::vector<Part> parts_{};
   std::vector<Return> sorted_{};
   std::vector<Return> unsorted_{};
   std::vector<int> direction_{};

@@ -16,17 +16,21 @@ void AirMap::clear() {
   cells_.clear();
 }
 
-void AirMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+void AirMap::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s) {
   const auto low = static_cast<float>(-params_.margin);
   const auto high = static_cast<float>(platform_.height + params_.margin);
   const auto reach = static_cast<float>(params_.reach), own = static_cast<float>(-params_.own);
-  const auto lidar = static_cast<float>(platform_.lidar_height);
-  float lowest = 0.0f, highest = 0.0f;  // Range of the rays' slopes.
-  for (const Eigen::Vector3f& p : points) {
+  const Eigen::Vector3f lidar = scan.origin(platform_.lidar_origin()).cast<float>();
+  float lowest = 0.0f, highest = 0.0f;  // Range of the slopes of the first lidar's rays.
+  for (const Eigen::Vector3f& p : scan.first()) {
+    const float range = std::hypot(p.x() - lidar.x(), p.y() - lidar.y());
+    if (!(range > 0.1f && std::isfinite(p.z()))) continue;  // False when it is not a number.
+    lowest = std::min(lowest, (p.z() - lidar.z()) / range);
+    highest = std::max(highest, (p.z() - lidar.z()) / range);
+  }
+  for (const Eigen::Vector3f& p : scan.all()) {
     const float range = std::hypot(p.x(), p.y());
     if (!(range > 0.1f && std::isfinite(p.z()))) continue;  // False when it is not a number.
-    lowest = std::min(lowest, (p.z() - lidar) / range);
-    highest = std::max(highest, (p.z() - lidar) / range);
     if (range > reach || p.z() < low || p.z() > high || body_.depth(p.x(), p.y()) > own) continue;
     const Eigen::Vector3d at = body * p.cast<double>();
     const auto i = static_cast<std::int32_t>(std::floor(at.x() / kCell));
@@ -50,8 +54,9 @@ void AirMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body
                                  (static_cast<float>(each.j) + 0.5f) * kCell);
     const Eigen::Vector3d local = back * Eigen::Vector3d(middle.x(), middle.y(), each.z);
     const auto range = static_cast<float>(std::hypot(local.x(), local.y()));
-    const float rise = (static_cast<float>(local.z()) - lidar) / std::max(range, 0.01f);
-    const bool hidden = range < static_cast<float>(params_.shortest) || rise < lowest || rise > highest;
+    const Eigen::Vector3f ray = local.cast<float>() - lidar;
+    const float seen_range = ray.head<2>().norm(), rise = ray.z() / std::max(seen_range, 0.01f);
+    const bool hidden = seen_range < static_cast<float>(params_.shortest) || rise < lowest || rise > highest;
     const double age = stamp_s - each.seen;
     constexpr float kPassed = 0.2f;  // m: the robot has left the height of the cell since it was seen.
     const auto z = static_cast<float>(local.z());

@@ -7,6 +7,7 @@
 
 #include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/geometry/scan_points.hpp"
 #include "nav/geometry/footprint.hpp"
 
 namespace adit::nav {
@@ -31,7 +32,7 @@ class AirMap {
   explicit AirMap(const Platform& platform, const AirMapParams& params = {});
 
   /// Takes one scan: points in base_link, m; pose of the body in the odometry frame; time, s.
-  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
   /// Centres of the occupied cells, odometry frame, m.
   std::span<const Eigen::Vector2f> cells() const { return cells_; }
   void clear();

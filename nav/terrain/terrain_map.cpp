@@ -95,25 +95,26 @@ void TerrainMap::clear() {
   begun_ = false;
 }
 
-void TerrainMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+void TerrainMap::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s) {
   if (!begun_) {
     epoch_ = stamp_s;
     last_body_ = body;
     begun_ = true;
   }
   now_ = static_cast<float>(stamp_s - epoch_);
-  View view(body, platform_.lidar_height);
+  const Eigen::Vector3d lidar = scan.origin(platform_.lidar_origin());
+  View view(body, lidar);
   view.raise(height_correction_);
   view.tilt_by(tilt_error_);
   ground_.begin_scan(view.base.x(), view.base.y(), now_);
   obstacles_.begin_scan(now_);
   rays_.clear();
-  sort_in(points, view);
+  sort_in(scan, view);
 
   GroundGrid::Offset offset;
   register_scan(body, view, offset);
-  const float blind =
-      rays_.lowest() < 0 ? static_cast<float>(platform_.lidar_height) / -rays_.lowest() : 0.0f;
+  const auto aside = static_cast<float>(lidar.head<2>().norm());
+  const float blind = rays_.lowest() < 0 ? static_cast<float>(lidar.z()) / -rays_.lowest() + aside : 0.0f;
   ground_.grow(offset, view.base.z(), view.tilt(), view.sensor.z() - view.base.z(), blind);
   // The standard deviation of the ground's height at range r is r times that of its gradient; that of a
   // return is its noise.
@@ -150,37 +151,44 @@ void TerrainMap::register_scan(const Pose3& body, View& view, GroundGrid::Offset
     for (Eigen::Vector3f& p : *returns) p = view.base + rotation * (p - base);
 }
 
-void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& view) {
+void TerrainMap::sort_in(const ScanPoints& scan, const View& view) {
   near_.clear();
   deep_.clear();
-  const auto lidar = static_cast<float>(platform_.lidar_height);
+  bool first = true;
+  scan.each_part(platform_.lidar_origin(), [&](auto points, const Eigen::Vector3d& origin) {
+    sort_in(points, origin.cast<float>(), std::exchange(first, false), view);
+  });
+}
+
+void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& sensor, bool first,
+                         const View& view) {
   const auto range2 = static_cast<float>(params_.range * params_.range);
   const auto min2 = static_cast<float>(params_.min_range * params_.min_range);
   const auto reach2 = static_cast<float>(std::pow(body_.radius(), 2));
   // Rays that cross the plane of the ground within range and end below it.
   const Eigen::Vector2f rise = ground_.grown() ? ground_.plane().gradient : view.tilt();
   const Eigen::Vector3f up = view.turn.transpose() * Eigen::Vector3f(-rise.x(), -rise.y(), 1.0f);
-  const float above = up.z() * lidar;  // Of the lidar over that plane.
+  const float above = up.dot(sensor);  // Of the lidar over that plane.
   const auto range = static_cast<float>(params_.range);
-  const Eigen::Vector3f sensor(0.0f, 0.0f, lidar);
   const Eigen::Matrix3f straight = Eigen::Matrix3f::Identity();
-  for (std::size_t first = 0; first < points.size(); first += block_.count()) {
-    block_.take(points.subspan(first), sensor, straight);
+  for (std::size_t begin = 0; begin < points.size(); begin += block_.count()) {
+    block_.take(points.subspan(begin), sensor, straight);
     for (std::size_t n = 0; n < block_.count(); ++n) {
-      const Eigen::Vector3f& p = points[first + n];
+      const Eigen::Vector3f& p = points[begin + n];
       const Ray ray = block_[n];
-      const float flat2 = ray.range * ray.range, dz = p.z() - lidar;
+      const float flat2 = ray.range * ray.range, dz = p.z() - sensor.z();
       const float full2 = flat2 + dz * dz;
       // Written so that a NaN fails. A vertical ray has no bearing.
       if (!(full2 > min2 && flat2 > 1e-4f && full2 < 1e6f)) continue;
-      rays_.add(ray);
-      if (flat2 <= range2) {
-        if (flat2 < reach2 && body_.depth(p.x(), p.y()) > 0.0f) continue;
+      if (first) rays_.add(ray);
+      const float out2 = p.x() * p.x() + p.y() * p.y();  // From base_link.
+      if (out2 <= range2) {
+        if (out2 < reach2 && body_.depth(p.x(), p.y()) > 0.0f) continue;
         const Eigen::Vector3f world = view.base + view.turn * p;
         ground_.add(world.x(), world.y(), world.z());
         near_.push_back(world);
       } else if (const float end = up.dot(p);
-                 end < 0 && above * ray.range < range * (above - end) && deep_.size() < kMaxDeep) {
+                 first && end < 0 && above * ray.range < range * (above - end) && deep_.size() < kMaxDeep) {
         deep_.push_back(view.base + view.turn * p);
       }
     }

@@ -5,6 +5,7 @@
 
 #include "core/config/platform.hpp"
 #include "core/config/traversability.hpp"
+#include "core/geometry/scan_points.hpp"
 #include "nav/terrain/drops.hpp"
 #include "nav/terrain/obstacle_cells.hpp"
 #include "nav/terrain/surface.hpp"
@@ -27,7 +28,7 @@ class TerrainMap {
   /// Takes one scan. `points`: base_link, m; not finite, or within min_range of the lidar (which is
   /// lidar_height above base_link), where there was no return. `body`: base_link, which is on the ground, in
   /// the odometry frame at the scan's time. `stamp_s`: that time, s, not decreasing.
-  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
 
   /// All places with a cost; valid until the next scan. Layers that share a place have one cell each.
   std::span<const TerrainCell> cells() const { return cells_; }
@@ -47,7 +48,10 @@ class TerrainMap {
   void clear();
 
  private:
-  void sort_in(std::span<const Eigen::Vector3f> points, const View& view);
+  void sort_in(const ScanPoints& scan, const View& view);
+  /// Sorts in what one lidar measured from `sensor`, base_link, m; `first`: it is the view's.
+  void sort_in(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& sensor, bool first,
+               const View& view);
   void register_scan(const Pose3& body, View& view, GroundGrid::Offset& offset);
   void mark_obstacles(const View& view);
   /// Whether a return is so far below the ground that the ground is missing there.

@@ -15,9 +15,10 @@ struct View {
   Eigen::Vector3f base{0, 0, 0};                      ///< base_link in the map, m.
 
   View() = default;
-  View(const Pose3& body, double lidar_height)
+  /// `lidar`: base_link, m.
+  View(const Pose3& body, const Eigen::Vector3d& lidar)
       : turn(body.orientation.toRotationMatrix().cast<float>()),
-        sensor((body * Eigen::Vector3d(0, 0, lidar_height)).cast<float>()),
+        sensor((body * lidar).cast<float>()),
         base(body.position.cast<float>()) {}
   void raise(float by) {
     sensor.z() += by;

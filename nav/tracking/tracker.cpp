@@ -46,7 +46,7 @@ const Tracker::Image* Tracker::reference(double stamp_s, double wanted) const {
   return best;
 }
 
-void Tracker::look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+void Tracker::look(const ScanPoints& scan, const Pose3& body, double stamp_s) {
   if (stamp_s - stamp_s_ > kBreak || jumped(body.planar(), stamp_s - stamp_s_)) clear();
   body_ = body.planar();
   const double dt = std::min(stamp_s - stamp_s_, kBreak);
@@ -55,8 +55,8 @@ void Tracker::look(std::span<const Eigen::Vector3f> points, const Pose3& body, d
   newest_ = next_;
   const std::size_t last = (next_ + kImages - 1) % kImages;
   if (stamp_s - images_[last].stamp_s >= kMinPeriod) next_ = (next_ + 1) % kImages;
-  take_in(points, body, now);
-  compare(points, body, before == &now ? nullptr : before, lately == &now ? nullptr : lately, now);
+  take_in(scan, body, now);
+  compare(scan, body, before == &now ? nullptr : before, lately == &now ? nullptr : lately, now);
   now.seen.spread();
   now.stamp_s = stamp_s;
   stamp_s_ = stamp_s;
@@ -73,9 +73,10 @@ bool Tracker::jumped(const Pose2& body, double dt) const {
          std::fabs(by.yaw) > kMore * platform_.max_turn * dt + kTurn;
 }
 
-void Tracker::take_in(std::span<const Eigen::Vector3f> points, const Pose3& body, Image& now) {
+void Tracker::take_in(const ScanPoints& scan, const Pose3& body, Image& now) {
   const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
-  const Eigen::Vector3f lidar(0.0f, 0.0f, static_cast<float>(platform_.lidar_height));
+  const Eigen::Vector3f lidar = scan.origin(platform_.lidar_origin()).cast<float>();
+  const auto points = scan.first();
   now.sensor = body.position.cast<float>() + turn * lidar;
   now.seen.clear();
   for (std::size_t first = 0; first < points.size(); first += block_.count()) {
@@ -90,10 +91,11 @@ void Tracker::take_in(std::span<const Eigen::Vector3f> points, const Pose3& body
   }
 }
 
-void Tracker::compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
-                      const Image* lately, const Image& now) {
+void Tracker::compare(const ScanPoints& scan, const Pose3& body, const Image* before, const Image* lately,
+                      const Image& now) {
   const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
-  const Eigen::Vector3f lidar(0.0f, 0.0f, static_cast<float>(platform_.lidar_height));
+  const Eigen::Vector3f lidar = scan.origin(platform_.lidar_origin()).cast<float>();
+  const auto points = scan.first();
   columns_.fill({});
   const Footprint own = Footprint(platform_).grown(params_.body_margin, params_.body_margin);
   const auto low = static_cast<float>(platform_.step + params_.lowest);

@@ -7,6 +7,7 @@
 
 #include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
+#include "core/geometry/scan_points.hpp"
 #include "nav/tracking/upright_range_image.hpp"
 
 namespace adit::nav {
@@ -62,7 +63,7 @@ class Tracker {
 
   /// Takes the newest scan: points in base_link, m; pose of the body in the odometry frame at that time;
   /// time, s, not decreasing.
-  void look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  void look(const ScanPoints& scan, const Pose3& body, double stamp_s);
   /// Objects that move or moved a moment ago, at the time of the newest scan.
   std::span<const Mover> movers() const { return {movers_.data(), mover_count_}; }
   /// Range image of the newest scan, after spread().
@@ -105,10 +106,10 @@ class Tracker {
   /// Whether the odometry moved farther than the robot can in `dt` s.
   bool jumped(const Pose2& body, double dt) const;
   /// Puts the returns into `now`, and the index of the nearest point of each bin into nearest_.
-  void take_in(std::span<const Eigen::Vector3f> points, const Pose3& body, Image& now);
+  void take_in(const ScanPoints& scan, const Pose3& body, Image& now);
   /// Finds which of the nearest returns are in space that the older images saw free.
-  void compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
-               const Image* lately, const Image& now);
+  void compare(const ScanPoints& scan, const Pose3& body, const Image* before, const Image* lately,
+               const Image& now);
   void observe();
   void add_observation(int first, int columns);
   void follow(double dt);

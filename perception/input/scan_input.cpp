@@ -182,10 +182,10 @@ ScanInput::SweepMotion ScanInput::motion_of(const Sweep& sweep, const PoseFuncti
 }
 
 std::size_t ScanInput::add_points(const Source& source, const Sweep& sweep, const SweepMotion& motion,
-                                  bool moved, Scan& scan) {
+                                  bool moved, const Eigen::Vector3f& mounted, Scan& scan) {
   const auto least2 = static_cast<float>(source.lidar.min_range * source.lidar.min_range);
   const auto most2 = static_cast<float>(source.lidar.max_range * source.lidar.max_range);
-  const Eigen::Vector3f origin = moved ? scan.origin : Eigen::Vector3f(0, 0, 0);
+  const Eigen::Vector3f origin = moved ? mounted : Eigen::Vector3f(0, 0, 0);
   scan.points.reserve(sweep.points.size());
   std::size_t below = 0;
   const std::vector<std::uint8_t>* isolated =
@@ -211,7 +211,7 @@ std::size_t ScanInput::add_points(const Source& source, const Sweep& sweep, cons
       ++scan.counts.own_body;
       continue;
     }
-    const float fall = scan.origin.z() - at.z();
+    const float fall = mounted.z() - at.z();
     below += fall > 0 && fall * fall > kFalls * kFalls * range2;
     scan.points.push_back(at);
     if (isolated)
@@ -256,16 +256,17 @@ Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index
   auto attitude = attitude_at(scan.stamp);
   if (!attitude) return attitude.error();
   scan.attitude = *attitude;
-  scan.origin = mounted.cast<float>();
 
   const SweepMotion motion = motion_of(sweep, pose, *T_base_sensor, scan);
-  const std::size_t below = add_points(source, sweep, motion, moved, scan);
+  const std::size_t below = add_points(source, sweep, motion, moved, mounted.cast<float>(), scan);
   if (const auto fits = plausible(source, sweep, scan, below); !fits) return fits.error();
   if (index > 0) {
     source.stamp = scan.stamp;
     source.points = std::move(scan.points);
+    source.origin = mounted;
     return std::optional<Scan>{};
   }
+  scan.parts = {{mounted, scan.points.size()}};
   note_attitude(scan);
   for (std::size_t n = 1; n < sources_.size(); ++n) merge(sources_[n], pose, scan);
   return std::optional<Scan>(std::move(scan));
@@ -291,6 +292,7 @@ void ScanInput::merge(Source& other, const PoseFunction& pose, Scan& scan) {
     T.translation() = T_now_then.position.cast<float>();
   }
   for (const Eigen::Vector3f& p : other.points) scan.points.push_back(T * p);
+  scan.parts.push_back({(T * other.origin.cast<float>()).cast<double>(), other.points.size()});
   if (!scan.isolated.empty()) scan.isolated.resize(scan.points.size(), 0);
   scan.counts.used = scan.points.size();
 }

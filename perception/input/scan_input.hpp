@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/config/platform.hpp"
+#include "core/geometry/scan_points.hpp"
 #include "perception/input/body_filter.hpp"
 #include "perception/input/deskew.hpp"
 #include "perception/input/frame_tree.hpp"
@@ -37,8 +38,8 @@ struct Scan {
   PointCloud points{};    ///< In base_link at `stamp`, m.
   /// One for each point, not 0: without a neighbour, as dust. Empty unless asked for by mark_isolated().
   std::vector<std::uint8_t> isolated{};
-  bool planar{false};               ///< The first lidar has one horizontal ring.
-  Eigen::Vector3f origin{0, 0, 0};  ///< Of the rays: the first lidar in base_link, m.
+  std::vector<ScanPart> parts{};  ///< Of the points, by lidar; at least one.
+  bool planar{false};             ///< The first lidar has one horizontal ring.
   /// R_level_base: roll and pitch of the body by its IMU. Nothing: the attitude is the odometry's.
   std::optional<Eigen::Quaterniond> attitude{};
   ScanCounts counts{};
@@ -103,14 +104,15 @@ class ScanInput {
   /// A lidar, its newest sweep, and the counts by which it is judged.
   struct Source {
     LidarConfig lidar{};
-    std::uint64_t newest{};  ///< Stamp of the newest sweep.
-    std::uint64_t stamp{};   ///< Of `points`.
-    PointCloud points{};     ///< Of the newest sweep, base_link at `stamp`.
-    bool must_return{};      ///< Its beams reach the ground, by the platform's file.
-    bool returned{};         ///< It has returned something.
-    bool saw_ground{};       ///< An earlier sweep had returns below the lidar.
-    int overtaken{};         ///< Rises by each sweep that comes after a newer one, falls by the others.
-    int missed{};            ///< Scans in a row without a sweep of it.
+    std::uint64_t newest{};           ///< Stamp of the newest sweep.
+    std::uint64_t stamp{};            ///< Of `points`.
+    PointCloud points{};              ///< Of the newest sweep, base_link at `stamp`.
+    Eigen::Vector3d origin{0, 0, 0};  ///< Of their rays, base_link at `stamp`, m.
+    bool must_return{};               ///< Its beams reach the ground, by the platform's file.
+    bool returned{};                  ///< It has returned something.
+    bool saw_ground{};                ///< An earlier sweep had returns below the lidar.
+    int overtaken{};  ///< Rises by each sweep that comes after a newer one, falls by the others.
+    int missed{};     ///< Scans in a row without a sweep of it.
   };
   /// The motion during a sweep, and the time of its first point.
   struct SweepMotion {
@@ -126,9 +128,9 @@ class ScanInput {
   SweepMotion motion_of(const Sweep& sweep, const PoseFunction& pose, const Pose3& T_base_sensor,
                         Scan& scan) const;
   /// Adds the returns of a sweep and counts its other points. `moved`: the points are in base_link already.
-  /// Returns the number of returns below the lidar.
+  /// `mounted`: the lidar in base_link, m. Returns the number of returns below the lidar.
   std::size_t add_points(const Source& source, const Sweep& sweep, const SweepMotion& motion, bool moved,
-                         Scan& scan);
+                         const Eigen::Vector3f& mounted, Scan& scan);
   void note_attitude(Scan& scan);
   Result<std::optional<Eigen::Quaterniond>> attitude_at(std::uint64_t stamp) const;
   static void merge(Source& other, const PoseFunction& pose, Scan& scan);

@@ -235,7 +235,7 @@ void Navigation::detect(std::shared_ptr<const Scan> scan, Time now) {
        stamp = seconds(now.time_since_epoch())]() -> Detected {
         if (std::exchange(detection->epoch, epoch) != epoch) detection->detector.clear();
         return std::make_shared<const nav::DetectedObstacles>(
-            detection->detector.look(scan->points, scan->body, stamp));
+            detection->detector.look(scan->measured(), scan->body, stamp));
       },
       [this, epoch = scan_epoch_](const Result<Detected>& detected) {
         if (detected) {
@@ -245,6 +245,24 @@ void Navigation::detect(std::shared_ptr<const Scan> scan, Time now) {
           detection_.reset(new Detection{monitor_.make_detector(), scan_epoch_});
         }
       });
+}
+
+std::vector<Eigen::Vector3f> Navigation::movers(Time now) const {
+  constexpr float kUnseen = 0.4f;  // m: the far side of a person, and limbs that swing.
+  constexpr double kOld = 1.0;     // s; who was seen then may be anywhere.
+  const nav::DetectedObstacles& seen = monitor_.seen();
+  const double age = seconds(now.time_since_epoch()) - seen.stamp_s;
+  std::vector<Eigen::Vector3f> discs;
+  if (!(age < kOld)) return discs;
+  for (const nav::Mover& mover : seen.movers) {
+    if (!mover.moves) continue;
+    float radius = 0;
+    for (const Eigen::Vector2f& point : mover.surface())
+      radius = std::max(radius, (point - mover.position).norm());
+    const Eigen::Vector2f at = mover.position + static_cast<float>(age) * mover.velocity;
+    discs.emplace_back(at.x(), at.y(), radius + kUnseen);
+  }
+  return discs;
 }
 
 const nav::RouteStep* Navigation::followed_route(Time now) const {

@@ -79,6 +79,9 @@ class Navigation : public Component, public NavigationInput {
   /// not fresh.
   void clear();
 
+  /// What moves, as discs that hold it now; see Scan::movers.
+  std::vector<Eigen::Vector3f> movers(Time now) const;
+
   bool terrain_fresh(Time now) const { return scanned_ && now - *scanned_ < params_.scan_age; }
   /// Whether the router answered a scan that is not older than `step_age`.
   bool map_fresh(Time now) const { return mapped_ && now - *mapped_ < params_.step_age; }

@@ -14,6 +14,29 @@ nav::LocalNavigation make_local_navigation(const PlannerParams& params,
 
 }  // namespace
 
+std::vector<std::uint8_t> Scan::passing() const {
+  std::vector<std::uint8_t> out = isolated;
+  if (movers.empty()) return out;
+  out.resize(points.size(), 0);
+  const Eigen::Isometry3f T =
+      (Eigen::Translation3d(body.position) * Eigen::Isometry3d(body.orientation)).cast<float>();
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Eigen::Vector2f at = (T * points[n]).head<2>();
+    for (const Eigen::Vector3f& disc : movers)
+      if ((at - disc.head<2>()).squaredNorm() < disc.z() * disc.z()) out[n] = 1;
+  }
+  return out;
+}
+
+PointCloud Scan::lasting() const {
+  const std::vector<std::uint8_t> passes = passing();
+  PointCloud out;
+  out.reserve(points.size());
+  for (std::size_t n = 0; n < points.size(); ++n)
+    if (n >= passes.size() || passes[n] == 0) out.push_back(points[n]);
+  return out;
+}
+
 struct Planner::Maps {
   nav::LocalNavigation local_navigation;
   std::uint32_t odom_epoch{};  ///< Odometry epoch of the points.
@@ -40,7 +63,7 @@ void Planner::plan(const std::shared_ptr<const PlanJob>& job,
         nav::LocalNavigation& local_navigation = maps->local_navigation;
         if (std::exchange(maps->odom_epoch, job->odom_epoch) != job->odom_epoch) local_navigation.clear();
         const double stamp = seconds(job->made.time_since_epoch());
-        local_navigation.add_scan(job->scan->points, job->scan->body, stamp);
+        local_navigation.add_scan(job->scan->measured(), job->scan->body, stamp);
         auto answer = std::make_shared<PlanAnswer>();
         if (job->target.kind != nav::Target::Kind::none)
           answer->plan = local_navigation.plan(job->target, job->pose, stamp, job->border);

@@ -5,6 +5,7 @@
 
 #include "core/component/call.hpp"
 #include "core/component/component.hpp"
+#include "core/geometry/scan_points.hpp"
 #include "nav/local_navigation.hpp"
 
 namespace adit::agent {
@@ -20,6 +21,16 @@ struct Scan {
   bool planar{false};     ///< See perception::Scan::planar.
   /// One for each point, not 0: without a neighbour, as dust, see perception::Scan. Empty: none.
   std::vector<std::uint8_t> isolated{};
+  std::vector<ScanPart> parts{};  ///< Of the points, by lidar. Empty: the first one measured all.
+
+  /// What moves: x, y and radius of discs in the frame of `body`, m.
+  std::vector<Eigen::Vector3f> movers{};
+
+  ScanPoints measured() const { return {points, parts}; }
+  /// One for each point, not 0: it is dust, or on what moves, and no part of a map. Empty: none is.
+  std::vector<std::uint8_t> passing() const;
+  /// The others, base_link, m.
+  PointCloud lasting() const;
 };
 
 /// The input of one planning cycle.

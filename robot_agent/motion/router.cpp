@@ -104,8 +104,8 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) {
           const auto scan = without_team(job->scan, job->team);
-          maps->planner.add_scan(scan->points, scan->located, stamp, job->goal.has_value());
-          maps->explorer.add_scan(scan->points, scan->located);
+          maps->planner.add_scan(scan->measured(), scan->located, stamp, job->goal.has_value());
+          maps->explorer.add_scan(scan->measured(), scan->located);
         }
         set_team(maps->planner, job->team, maps->platform.width / 2);
         if (job->goal) return maps->step(*job, stamp);

@@ -20,6 +20,7 @@ namespace {
 
 constexpr Duration kScanDeadline = 500ms;            // an older scan says nothing of the terrain
 constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the lidar has another clock
+constexpr std::size_t kMaxWaiting = 4;               // sweeps; as many as a lidar of 20 Hz sends meanwhile
 constexpr std::uint64_t kImuWait = 60'000'000;       // ns; a longer gap is bridged by the driver's odometry
 constexpr Duration kDrivesUnheard = 750ms;           // without odometry, until a robot gets zero
 constexpr int kMaxNotDeskewed = 5;                   // consecutive scans before the operator is warned
@@ -132,8 +133,7 @@ void Scans::take(const nav_msgs::msg::Odometry& odometry, Time received) {
     history_.add(stamp, {at, q.normalized()});
     if (odometry_) odometry_->add(perception::BodyMotion{stamp, {at, q.normalized()}});
     input_.add_odometry(stamp, vector_of(odometry.twist().twist().linear()), Pose3{at, q.normalized()}.yaw());
-    for (std::size_t n = 0; n < waiting_.size(); ++n)
-      if (waiting_[n] && !is_ahead(waiting_[n]->sweep)) pass_on(n);
+    for (std::size_t n = 0; n < waiting_.size(); ++n) pass_on_ready(n);
   });
 }
 
@@ -153,9 +153,17 @@ void Scans::two_sources(const std::string& topic, const OneSource& source) {
 void Scans::take(Result<perception::Sweep> sweep, std::size_t lidar, const std::string& frame,
                  Time received) {
   if (!sweep) return refuse(lidars_[lidar].topic, sweep.error());
-  if (waiting_[lidar]) pass_on(lidar);
-  waiting_[lidar] = {std::move(*sweep), frame, received};
-  if (!is_ahead(waiting_[lidar]->sweep)) pass_on(lidar);
+  waiting_[lidar].push_back({std::move(*sweep), frame, received});
+  pass_on_ready(lidar);
+}
+
+void Scans::pass_on_ready(std::size_t lidar) {
+  auto& waiting = waiting_[lidar];
+  while (!waiting.empty() && (waiting.size() > kMaxWaiting || !is_ahead(waiting.front().sweep))) {
+    const Waiting first = std::move(waiting.front());
+    waiting.pop_front();
+    pass_on(lidar, first);
+  }
 }
 
 bool Scans::is_ahead(const perception::Sweep& sweep) const {
@@ -218,8 +226,7 @@ void Scans::report_clock_steps() {
   if (steps.wheels != before.wheels) report("odom", "the odometry");
 }
 
-void Scans::pass_on(std::size_t lidar) {
-  const Waiting waiting = *std::exchange(waiting_[lidar], std::nullopt);
+void Scans::pass_on(std::size_t lidar, const Waiting& waiting) {
   // One clock for all, as without it nothing can be deskewed.
   const bool located =
       lidar == 0 && waiting.sweep.stamp != 0 && advance_odometry(waiting.sweep, waiting.frame);
@@ -240,7 +247,7 @@ void Scans::pass_on(std::size_t lidar) {
   const auto attitude = report && report->health != Localisation::lost ? std::nullopt : complete.attitude;
   call(output_,
        {std::make_shared<PointCloud>(std::move(complete.points)), complete.stamp, attitude, waiting.received,
-        report, complete.planar, std::move(complete.isolated)},
+        report, complete.planar, std::move(complete.isolated), std::move(complete.parts)},
        {.deadline = kScanDeadline}, [](const Result<void>&) {});
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -43,6 +44,7 @@ struct LidarScan {
   std::optional<OdometryReport> odometry{};
   bool planar{false};                    ///< See perception::Scan::planar.
   std::vector<std::uint8_t> isolated{};  ///< See perception::Scan::isolated.
+  std::vector<ScanPart> parts{};         ///< See perception::Scan::parts.
 };
 /// Takes scans; offered by the component that uses them.
 using ScanService = Service<LidarScan, void>;
@@ -97,7 +99,9 @@ class Scans : public Component {
   void take(Result<perception::Sweep> sweep, std::size_t lidar, const std::string& frame, Time received);
   /// Whether the next odometry brings the poses of the sweep's end.
   bool is_ahead(const perception::Sweep& sweep) const;
-  void pass_on(std::size_t lidar);
+  /// Passes on the sweeps of a lidar that need not wait, in their order.
+  void pass_on_ready(std::size_t lidar);
+  void pass_on(std::size_t lidar, const Waiting& waiting);
   /// Moves the odometry to the end of a sweep of the first lidar; makes it when it is the first sweep.
   bool advance_odometry(const perception::Sweep& sweep, const std::string& frame);
   /// Where the scan was taken. With a clock of its own, the driver's newest pose stands for that of the
@@ -123,7 +127,7 @@ class Scans : public Component {
   FoundPlaceService* found_place_;
   std::optional<perception::LidarOdometry> odometry_{};  ///< Made with the first sweep.
   perception::LidarOdometry::ClockSteps clock_steps_{};  ///< Those that were reported.
-  std::vector<std::optional<Waiting>> waiting_;          ///< For odometry as new as the sweep, by lidar.
+  std::vector<std::deque<Waiting>> waiting_;             ///< For odometry as new as the sweep, by lidar.
   bool in_g_reported_{false};
   int not_deskewed_{0};  ///< Consecutive scans that were not corrected for motion, or of another clock.
   Time odometry_heard_{};

@@ -37,8 +37,13 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   rest->located = scan->located;
   rest->jumps = scan->jumps;
   rest->planar = scan->planar;
+  rest->movers = scan->movers;
   rest->points.reserve(scan->points.size());
+  rest->parts = scan->parts;
+  for (ScanPart& part : rest->parts) part.count = 0;
+  std::size_t part = 0, end = scan->parts.empty() ? scan->points.size() : scan->parts[0].count;
   for (std::size_t n = 0; n < scan->points.size(); ++n) {
+    while (n >= end && part + 1 < scan->parts.size()) end += scan->parts[++part].count;
     const Eigen::Vector3f& point = scan->points[n];
     const Eigen::Vector2d place = point.head<2>().cast<double>();
     const double height = scan->body.position.z() + (scan->body.orientation * point.cast<double>()).z();
@@ -49,6 +54,7 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
     });
     if (inside) continue;
     rest->points.push_back(point);
+    if (!rest->parts.empty()) ++rest->parts[part].count;
     if (!scan->isolated.empty()) rest->isolated.push_back(scan->isolated[n]);
   }
   return rest;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/notices/notices.hpp"
 
+#include <cmath>
 #include <cstdio>
 
 namespace adit::agent {
@@ -95,10 +96,18 @@ void Notices::localisation(Localisation health, double sigma) const {
               robot_ + " knows its place again, to " + known);
 }
 
-void Notices::wheels_slip() const {
+void Notices::place_not_searched(double radius) const {
+  to_holder(Severity::error, "place_not_searched", Reason::localisation_lost,
+            robot_ + " is lost and may be more than " + std::to_string(std::lround(radius)) +
+                " m from where it was: it does not search its place any more; set where it is by: pose " +
+                robot_ + " X Y YAW");
+}
+
+void Notices::wheels_slip(bool flies) const {
   to_holder(Severity::warning, "wheels_slip", Reason::none,
-            "the wheels of " + robot_ +
-                " turn and its body does not follow: the ground is loose, or something holds it");
+            flies ? "the driver of " + robot_ + " reports a motion that its lidar does not see"
+                  : "the wheels or legs of " + robot_ +
+                        " move and its body does not follow: the ground is loose, or something holds it");
 }
 
 void Notices::stuck() const {

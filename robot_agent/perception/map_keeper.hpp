@@ -22,7 +22,7 @@ namespace adit::agent {
 struct MapKeeperParams {
   std::string robot{};
   std::uint64_t seed{1};            ///< Of the map's id.
-  Eigen::Vector3f origin{0, 0, 0};  ///< Of the rays, in base_link, m.
+  Eigen::Vector3d origin{0, 0, 0};  ///< Of the rays of a scan without parts, base_link, m.
   double min_move{0.2};             ///< Way between two scans that enter the map, m.
   double min_turn{0.087};           ///< The same, rad.
   Duration min_period{1s};          ///< The same while the robot does neither.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/perception/map_part.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -17,7 +18,14 @@ MapStep inserted(const MapJob& job, MapStep step, perception::SubmapGrid& grid, 
   points.reserve(scan->points.size());
   for (const Eigen::Vector3f& point : scan->points) points.push_back(T * point);
   // A new submap is unknown everywhere: one return of dust would be an obstacle in it at once.
-  grid.insert(T * job.origin, points, static_cast<float>(range), scan->isolated);
+  const std::vector<std::uint8_t> passing = scan->passing();
+  std::span<const std::uint8_t> rest(passing);
+  ScanPoints(points, scan->parts)
+      .each_part(job.origin, [&](std::span<const Eigen::Vector3f> part, const Eigen::Vector3d& origin) {
+        const auto passes = rest.first(std::min(part.size(), rest.size()));
+        rest = rest.subspan(passes.size());
+        grid.insert(T * origin.cast<float>(), part, static_cast<float>(range), passes);
+      });
   const std::uint32_t since = job.known_submap == step.submap ? job.known_revision : 0;
   for (const perception::BlockIndex& index : grid.changed_since(since))
     if (const auto block = grid.coarse(index)) step.blocks.push_back(*block);

@@ -15,7 +15,7 @@ namespace adit::agent {
 /// A scan for the map.
 struct MapJob {
   std::shared_ptr<const Scan> scan{};
-  Eigen::Vector3f origin{0, 0, 0};  ///< Of the rays, in base_link, m.
+  Eigen::Vector3d origin{0, 0, 0};  ///< Of the rays of a scan without parts, base_link, m.
   std::vector<TeamRobot> team{};    ///< Robots in view, which are no part of the map.
   std::uint32_t odom_epoch{};       ///< Of the scan's odometry frame.
   std::uint32_t next_submap{};      ///< Index of a submap that is opened now.

@@ -36,7 +36,7 @@ LidarParams lidar_of(const Platform& platform, int columns) {
 
 Pose3 sensor_of(const Platform& platform, const Pose3& base) {
   Pose3 out = base;
-  out.position += base.orientation * Eigen::Vector3d(0, 0, platform.lidar_height);
+  out.position += base.orientation * platform.lidar_origin();
   return out;
 }
 

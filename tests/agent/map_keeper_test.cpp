@@ -26,6 +26,17 @@ class MapKeeperTest : public testing::Test {
     part = std::make_unique<MapPart>(MapParams{}, *strand, Log{}, service);
     EXPECT_TRUE(part->start().ok());
   }
+  /// Occupied voxels farther and nearer than 2.5 m.
+  static std::pair<int, int> count_occupied(const MapStep& step) {
+    int far = 0, near = 0;
+    for (const perception::CoarseBlock& block : step.blocks)
+      for (int z = 0; z < perception::CoarseBlock::kEdge; ++z)
+        for (int y = 0; y < perception::CoarseBlock::kEdge; ++y)
+          for (int x = 0; x < perception::CoarseBlock::kEdge; ++x)
+            if (block.at(x, y, z) == perception::Voxel::occupied)
+              ++(0.8 * block.index.x + 0.2 * x > 2.5 ? far : near);
+    return {far, near};
+  }
   /// Offers a scan at x; returns whether it enters the map.
   bool scan(double x, std::uint32_t odom_epoch = 0) {
     auto points = std::make_shared<Scan>();
@@ -78,15 +89,51 @@ TEST_F(MapKeeperTest, DustIsNoObstacleInIt) {
   service.call(*strand, job, {.deadline = 2s}, [&](const Result<MapStep>& done) { step = done.value(); });
   run(100ms);
   ASSERT_TRUE(step);
-  int wall = 0, dust = 0;
-  for (const perception::CoarseBlock& block : step->blocks)
-    for (int z = 0; z < perception::CoarseBlock::kEdge; ++z)
-      for (int y = 0; y < perception::CoarseBlock::kEdge; ++y)
-        for (int x = 0; x < perception::CoarseBlock::kEdge; ++x)
-          if (block.at(x, y, z) == perception::Voxel::occupied)
-            ++(0.8 * block.index.x + 0.2 * x > 2.5 ? wall : dust);
+  const auto [wall, dust] = count_occupied(*step);
   EXPECT_GT(wall, 10);
   EXPECT_EQ(dust, 0);
+}
+
+TEST_F(MapKeeperTest, WhatMovesIsNoObstacleInIt) {
+  // Someone walks before a wall.
+  auto cloud = std::make_shared<Scan>();
+  for (int n = 0; n < 40; ++n) cloud->points.emplace_back(3.0F, -2.0F + 0.1F * static_cast<float>(n), 0.5F);
+  for (int n = 0; n < 8; ++n) cloud->points.emplace_back(1.5F, 0.5F + 0.05F * static_cast<float>(n), 0.8F);
+  cloud->movers = {{1.6F, 0.7F, 0.5F}};
+  EXPECT_EQ(cloud->lasting().size(), 40U);
+  auto job = std::make_shared<MapJob>();
+  job->scan = cloud;
+  job->origin = {0, 0, 0.5};
+  std::optional<MapStep> step;
+  service.call(*strand, job, {.deadline = 2s}, [&](const Result<MapStep>& done) { step = done.value(); });
+  run(100ms);
+  ASSERT_TRUE(step);
+  const auto [wall, mover] = count_occupied(*step);
+  EXPECT_GT(wall, 10);
+  EXPECT_EQ(mover, 0);
+}
+
+TEST_F(MapKeeperTest, RaysOfASecondLidarBeginWhereItIs) {
+  // A plate between the first lidar and the wall that the second one sees.
+  const auto scan_of = [](bool plate) {
+    auto cloud = std::make_shared<Scan>();
+    for (int n = 0; plate && n < 20; ++n)
+      cloud->points.emplace_back(0.0F, -0.5F + 0.05F * static_cast<float>(n), 0.5F);
+    cloud->parts = {{{-0.5, 0, 0.5}, cloud->points.size()}, {{0.5, 0, 0.5}, 40}};
+    for (int n = 0; n < 40; ++n) cloud->points.emplace_back(3.0F, -2.0F + 0.1F * static_cast<float>(n), 0.5F);
+    return cloud;
+  };
+  int plates = 0;
+  for (int n = 0; n < 20; ++n) {
+    auto job = std::make_shared<MapJob>();
+    job->scan = scan_of(n < 3);
+    std::optional<MapStep> step;
+    service.call(*strand, job, {.deadline = 2s}, [&](const Result<MapStep>& done) { step = done.value(); });
+    run(100ms);
+    ASSERT_TRUE(step);
+    plates = count_occupied(*step).second;
+  }
+  EXPECT_GE(plates, 5);
 }
 
 TEST_F(MapKeeperTest, ALongWayMakesSeveralSubmaps) {

@@ -200,6 +200,16 @@ TEST_F(ScansTest, AClockThatIsAlwaysApartIsReportedAndThePoseIsWeak) {
   EXPECT_THAT(codes(), Contains("not_deskewed"));
 }
 
+TEST_F(ScansTest, SweepsOfALidarWhoseClockIsAheadWaitForTheirPoses) {
+  // Less than what is taken for another clock, but more than the time between two sweeps.
+  odometry_clock_ = -150;
+  drive(0, 3, 0, [&](double t) { send_cloud(sweep(t), t); });
+  const OdometryReport* report = newest();
+  ASSERT_NE(report, nullptr);
+  EXPECT_EQ(report->health, Localisation::ok);
+  EXPECT_EQ(report->stamp, at(2.8, 0));
+}
+
 TEST_F(ScansTest, TheStepOfAClockIsReportedOnce) {
   drive(0, 2, 0, [&](double t) { send_cloud(sweep(t), t); });
   EXPECT_THAT(codes(), Not(Contains("clock_stepped")));

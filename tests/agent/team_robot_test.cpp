@@ -26,10 +26,14 @@ TEST(TeamRobots, OnlyTheReturnsOfTheirBodiesAreTakenOut) {
     scan->points.push_back((scan->body.inverse() * at).cast<float>());
     scan->isolated.push_back(static_cast<std::uint8_t>(scan->isolated.size()));
   }
+  scan->parts = {{{0.5, 0, 0.5}, 2}, {{-0.5, 0, 0.5}, 3}};
   const auto rest = without_team(
       scan, {{"r2", Pose2{3, 0, 0}, 0.0, 1.0, 0.6, 0.0}, {"r3", Pose2{5, 0, 0}, -3.0, 1.0, 0.6, 0.0}});
   EXPECT_THAT(rest->isolated, testing::ElementsAre(1, 2, 3, 4)) << "ceiling, hole, floor above r3, beside r2";
   EXPECT_EQ(rest->points.size(), 4U);
+  ASSERT_EQ(rest->parts.size(), 2U);
+  EXPECT_EQ(rest->parts[0].count, 1U);
+  EXPECT_EQ(rest->parts[1].count, 3U);
 }
 
 }  // namespace

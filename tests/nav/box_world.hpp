@@ -43,11 +43,16 @@ struct BoxWorld {
   /// deviation).
   std::vector<Eigen::Vector3f> scan(const Pose2& body, double height, int rings, int columns, double noise,
                                     std::mt19937& random) const {
+    return scan(body, Eigen::Vector3d(0, 0, height), rings, columns, noise, random);
+  }
+  /// The same from a lidar at `lidar`, base_link, m.
+  std::vector<Eigen::Vector3f> scan(const Pose2& body, const Eigen::Vector3d& lidar, int rings, int columns,
+                                    double noise, std::mt19937& random) const {
     std::normal_distribution<double> error(0.0, 1.0);
     std::vector<Eigen::Vector3f> points;
     points.reserve(static_cast<std::size_t>(rings * columns));
-    const Eigen::Vector3d from(body.x, body.y, height);
     const Eigen::Matrix3d R(Eigen::AngleAxisd(body.yaw, Eigen::Vector3d::UnitZ()));
+    const Eigen::Vector3d from = Eigen::Vector3d(body.x, body.y, 0) + R * lidar;
     std::vector<Eigen::Vector2d> elevations;  // cosine, sine
     for (int ring = 0; ring < rings; ++ring) {
       const double elevation =
@@ -63,7 +68,7 @@ struct BoxWorld {
         const double range = cast(from, direction);
         if (range >= 100.0) continue;
         const Eigen::Vector3d point = local * (range + noise * error(random));
-        points.push_back((point + Eigen::Vector3d(0, 0, height)).cast<float>());
+        points.push_back((point + lidar).cast<float>());
       }
     }
     return points;

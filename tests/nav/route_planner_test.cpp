@@ -201,11 +201,11 @@ TEST(RoutePlanner, BlockedPlacesCountForAWhile) {
   planner.block({10, 8.4, 0}, 6.0);
   EXPECT_EQ(planner.plan(from, to).status, RouteStatus::unreachable);
   EXPECT_TRUE(planner.has_blocked_places());
-  planner.add_scan({}, Pose3::level({2, 2.4, 0}, 0), 25.5);  // 20 s later the first counts no more
+  planner.add_scan(PointCloud{}, Pose3::level({2, 2.4, 0}, 0), 25.5);  // 20 s later the first counts no more
   planner.finish();
   EXPECT_NEAR(planner.plan(from, to).length, near.length, 0.1);
   planner.block({10, 2.4, 0}, 27.0);  // again: twice as long
-  planner.add_scan({}, Pose3::level({2, 2.4, 0}, 0), 60.0);
+  planner.add_scan(PointCloud{}, Pose3::level({2, 2.4, 0}, 0), 60.0);
   planner.finish();
   EXPECT_GT(planner.plan(from, to).length, 18);
 }

@@ -203,7 +203,7 @@ TEST(TerrainMap, SurvivesBadPoints) {
   const std::vector<Eigen::Vector3f> bad{{nan, 0, 0},  {0, nan, nan}, {inf, 0, 0}, {0, 0, -inf},
                                          {0, 0, 0.5f}, {1e30f, 0, 0}, {0, 0, 0},   {1e-3f, 0, 9}};
   map.add_scan(bad, Pose3{}, 0.0);
-  map.add_scan({}, Pose3{}, 0.1);
+  map.add_scan(PointCloud{}, Pose3{}, 0.1);
   EXPECT_EQ(map.cells().size(), 0u);
 }
 

@@ -154,7 +154,8 @@ TEST(ScanInput, ALidarUnderTheFloorIsRefused) {
   ASSERT_TRUE(input.add_transform("base_link", "velodyne", Pose3::level({0.1, 0, 0}, 0.4)));
   const auto repaired = input.add(of({{3, 0, 1}}), 0, "velodyne", standing);
   ASSERT_TRUE(repaired) << repaired.error().text;
-  EXPECT_LT(((*repaired)->origin - Eigen::Vector3f(0.1f, 0, 0.4f)).norm(), 1e-6f) << "where it really is";
+  EXPECT_LT(((*repaired)->parts[0].origin - Eigen::Vector3d(0.1, 0, 0.4)).norm(), 1e-6)
+      << "where it really is";
 }
 
 TEST(ScanInput, AnOvertakenScanIsRefused) {
@@ -247,6 +248,13 @@ TEST(ScanInput, SeveralLidarsBecomeOneScan) {
   ASSERT_EQ((*scan)->points.size(), 2U);
   const Eigen::Vector3d expected = driven(front.stamp)->inverse() * Eigen::Vector3d(-3.2, 0, 0.4);
   EXPECT_LT(((*scan)->points[1].cast<double>() - expected).norm(), 1e-4);
+  // The rays of each lidar begin where it was, seen from where the body is now.
+  ASSERT_EQ((*scan)->parts.size(), 2U);
+  EXPECT_LT(((*scan)->parts[0].origin - Eigen::Vector3d(0.2, 0, 0.5)).norm(), 1e-9);
+  const Eigen::Vector3d origin = driven(front.stamp)->inverse() * Eigen::Vector3d(-0.2, 0, 0.4);
+  EXPECT_LT(((*scan)->parts[1].origin - origin).norm(), 1e-4);
+  EXPECT_EQ((*scan)->parts[0].count, 1U);
+  EXPECT_EQ((*scan)->parts[1].count, 1U);
   front.stamp += 500'000'000;
   EXPECT_EQ((*input.add(front, 0, "lidar", driven))->points.size(), 1U) << "the rear one is too old";
 }
