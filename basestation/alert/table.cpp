@@ -29,6 +29,7 @@ constexpr std::array kRows{
     // The robot does not know where it is, cannot use what its driver sends, or is about to fail.
     AlertRow{"odometry_jumped", soon, Ends::goes_on},
     AlertRow{"localisation_lost", soon, Ends::seen, "localisation_ok"},
+    AlertRow{"place_not_searched", soon, Ends::seen, "localisation_ok"},
     AlertRow{"not_localised_here", soon, Ends::goes_on},
     AlertRow{"sensor_refused", soon, Ends::understood},
     AlertRow{"sensor_silent", soon},

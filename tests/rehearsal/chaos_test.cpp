@@ -64,6 +64,10 @@ TEST(Chaos, SeedsOfACorridorWithAreasBreakNoRule) {
   expect_no_rule_broken("fence_chaos.yaml", seeds(2, 20), 25, 3);
 }
 
+TEST(Chaos, SeedsOfDriversFaultsBreakNoRule) {
+  expect_no_rule_broken("driver_chaos.yaml", seeds(1, 20), 20, 4);
+}
+
 TEST(Chaos, RandomFaultsWrittenToAFileGiveTheSameRun) {
   const Scenario scenario = short_team();
   const Scenario written = written_out(scenario, 5);

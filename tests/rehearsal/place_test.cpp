@@ -118,6 +118,20 @@ std::string carried(std::uint64_t seed, const std::string& more_boxes, const std
          "faults:\n  - {at: 15, cover: r1, for: 4}\n  - {at: 15, slip: r1, wheels: [-0.8, 0.9], for: 3.5}\n";
 }
 
+TEST(Lidars, ARosetteAndTwoOfThemKeepThePose) {
+  for (const char* lidars : {"{x: 0, y: 0, z: 0.5, pattern: rosette}",
+                             "[{x: 0.4, y: 0, z: 0.5, topic: points, frame: lidar}, "
+                             "{x: -0.5, y: 0.1, z: 0.5, yaw: 3.14159, topic: rear/points, frame: rear}]"}) {
+    std::string text = carried(1, ", [6, 6.4, -1, 1, 0, 2.5]", "");
+    text = text.substr(0, text.find("faults:")) +
+           "expect:\n  - {always: no_collision}\n  - {always: pose_within, m: 0.3}\n"
+           "  - {by: 39, robot: r1, near: [12, 2, 0.6]}\n";
+    text.replace(text.find("pose: [0, 2, 0]"), 15,
+                 std::string("pose: [0, 2, 0], sensors: {lidar: ") + lidars + "}");
+    EXPECT_EQ(run_text(text, "lidars.yaml").complaints(), std::vector<std::string>{}) << lidars;
+  }
+}
+
 TEST(LostRobot, FindsItsPlaceByWhatItSawBefore) {
   for (std::uint64_t seed = 1; seed <= restart_seeds(); ++seed) {
     const RunReport report =
@@ -140,6 +154,15 @@ TEST(LostRobot, StaysLostWhenItsSensorsAreRestarted) {
       "  - {at: 27, by_operator: op1, refused: localisation_lost}\n"
       "  - {at: 39, robot: r1, near: [6, 2, 0.3]}\n";
   EXPECT_EQ(run_text(text, "restarted.yaml").complaints(), std::vector<std::string>{});
+}
+
+TEST(LostRobot, SaysWhenItMayBeTooFarAwayToSearchItsPlace) {
+  std::string text = carried(1, "", "");
+  text = text.substr(0, text.find("faults:")) +
+         "faults:\n  - {at: 8, cover: r1, for: 16}\n  - {at: 8, slip: r1, wheels: [-1.9, 0.9], for: 15.5}\n"
+         "expect:\n  - {by: 27, by_operator: op1, notified: place_not_searched, robot: r1}\n"
+         "  - {at: 27, by_operator: op1, refused: localisation_lost}\n";
+  EXPECT_EQ(run_text(text, "far.yaml").complaints(), std::vector<std::string>{});
 }
 
 TEST(SpinningWheels, EndAnAutonomousMode) {
