@@ -224,7 +224,8 @@ void Agent::CommandComponent::add_waiting_scan() {
   const auto located = waiting.odometry ? correction_.located(*waiting.odometry) : std::nullopt;
   scan->located = located.value_or(scan->body);
   scan->jumps = correction_.jumps();
-  scan->movers = navigation_.movers(now());
+  // A pose that is being corrected moves everything.
+  if (localisation(now()) == Localisation::ok) scan->movers = navigation_.movers(now());
   if (context_.place.waits() && paired) compare_place(scan);
   if (waiting.odometry && located) search_place(scan);
   if (waiting.odometry) watch_grip(*waiting.odometry, now());

@@ -40,7 +40,7 @@ struct LidarConfig {
   double min_range{0.05};       ///< Shorter returns are discarded, m, [0, 5].
   double max_range{200};        ///< Longer returns are discarded, m, [1, 500].
   double noise{0.02};           ///< Standard deviation of a range, m, [0, 0.5].
-  /// Simulated beams never keep an elevation; else each ring has its own.
+  /// Simulated lidar: scans a rosette instead of rings.
   bool rosette{false};
 };
 

@@ -65,7 +65,7 @@ class Explorer {
  public:
   explicit Explorer(const Platform& platform, const ExploreParams& params = {});
 
-  /// Takes a scan. `points`: base_link, m; `body`: base_link, on the ground.
+  /// Takes a scan. `body`: base_link, on the ground.
   void add_scan(const ScanPoints& scan, const Pose3& body);
   /// Begins an exploration: what was seen stays seen, and places that were blocked may be tried again.
   void begin();

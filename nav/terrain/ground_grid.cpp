@@ -234,16 +234,20 @@ float GroundGrid::below_plane(const Eigen::Vector3f& p) const {
   return plane_.height + plane_.gradient.dot(way) - p.z() - kBend * std::max(0.0f, way.norm() - reach_);
 }
 
-bool GroundGrid::falls_by_slope(const Step& s, float rise, std::uint8_t gap, float lidar) const {
-  const float range = kCell * std::sqrt(static_cast<float>(s.dx * s.dx + s.dy * s.dy));
-  if (range * lidar < params_.sure * (lidar - rise))
+bool GroundGrid::falls_by_slope(const Step& s, float rise, std::uint8_t gap,
+                                const Eigen::Vector3f& lidar) const {
+  const float dx = static_cast<float>(s.dx) - lidar.x() / kCell,
+              dy = static_cast<float>(s.dy) - lidar.y() / kCell;
+  const float range = kCell * std::sqrt(dx * dx + dy * dy), high = lidar.z();
+  if (range * high < params_.sure * (high - rise))
     return false;  // The ray would have shown an edge at this place.
-  const float spacing = (range * range + lidar * lidar) / lidar * params_.rings;
+  const float spacing = (range * range + high * high) / high * params_.rings;
   const float run = std::min(2 * spacing, kCell * static_cast<float>(gap));
   return rise >= -(kFlat + params_.slope * run);
 }
 
-void GroundGrid::grow(const Offset& offset, float z, const Eigen::Vector2f& tilt, float lidar, float blind) {
+void GroundGrid::grow(const Offset& offset, float z, const Eigen::Vector2f& tilt,
+                      const Eigen::Vector3f& lidar, float blind) {
   at_ = kCell * Eigen::Vector2f(static_cast<float>(centre_x_), static_cast<float>(centre_y_));
   fit_ground(offset, z, tilt, blind);
   const float steep = plane_.gradient.norm() / params_.slope;
@@ -283,7 +287,7 @@ void GroundGrid::grow(const Offset& offset, float z, const Eigen::Vector2f& tilt
       climb = std::max(climb, grown);
     }
     bool ground = now_ - stamp_[at] <= params_.memory && rise <= most;
-    if (ground && rise < least) ground = lidar > 0 && falls_by_slope(s, rise, gap, lidar);
+    if (ground && rise < least) ground = lidar.z() > 0 && falls_by_slope(s, rise, gap, lidar);
     ground_[s.index] = ground ? height_[at] : 0.5f * (a + b);
     floor_[s.index] = std::min(ground_[s.index], (ground ? height_[at] - rise : std::min(a, b)) + climb);
     gap_[s.index] = ground ? std::uint8_t{0} : after(std::min(gap_[s.inner_a], gap_[s.inner_b]));

@@ -71,9 +71,11 @@ class GroundGrid {
   /// Computes the scan's correction relative to the map; zero when they overlap too little.
   Offset disagreement();
   /// Inserts the scan's heights, corrected by `offset`, and updates the ground around a robot at height `z`
-  /// with attitude `tilt` (rise per metre along x and y) and a lidar `lidar` metres above it. `blind`:
-  /// horizontal distance at which the lowest ray meets level ground, m.
-  void grow(const Offset& offset, float z, const Eigen::Vector2f& tilt, float lidar, float blind);
+  /// with attitude `tilt` (rise per metre along x and y). `lidar`: from the robot along x and y, and above
+  /// the plane of its attitude, m. `blind`: horizontal distance from the robot at which the lowest ray meets
+  /// level ground, m.
+  void grow(const Offset& offset, float z, const Eigen::Vector2f& tilt, const Eigen::Vector3f& lidar,
+            float blind);
   /// The plane of the ground around the robot after the last grow(); its height is the one under the robot.
   const PlaneFit& plane() const { return plane_; }
   /// Minimum depth of a place below that plane, m: the ground may bend away from the plane outside of the
@@ -145,7 +147,7 @@ class GroundGrid {
   }
   void roll(int x, int y);
   /// Whether ground that falls by -`rise` over the gap before a cell may be a ramp between two rings.
-  bool falls_by_slope(const Step& step, float rise, std::uint8_t gap, float lidar) const;
+  bool falls_by_slope(const Step& step, float rise, std::uint8_t gap, const Eigen::Vector3f& lidar) const;
   void fit_ground(const Offset& offset, float z, const Eigen::Vector2f& tilt, float blind);
 
   GroundParams params_;

@@ -66,13 +66,13 @@ void ObstacleCells::mark_under(float x, float y) {
   if (e.ix == ix && e.iy == iy && e.scan == scan_) ++e.under;
 }
 
-void ObstacleCells::keep(const View& view, const LidarRangeImage& rays, const GroundGrid& ground,
-                         float step) {
+void ObstacleCells::keep(const View& view, const LidarRangeImage& rays, std::span<const Seen> more,
+                         const GroundGrid& ground, float step) {
   std::size_t remaining = 0;
   for (Entry& entry : entries_) {
     const bool passable = entry.scan != scan_ && ground.measured(entry.x(), entry.y()) &&
                           entry.z_high - ground.before(entry.x(), entry.y()) <= step;
-    if (!stays(entry, view, rays, step, passable)) {
+    if (!stays(entry, view, rays, more, step, passable)) {
       slots_[slot(entry.ix, entry.iy)] = 0;
       continue;
     }
@@ -96,8 +96,8 @@ bool ObstacleCells::stray(const Entry& entry, float dx, float dy, float range) c
   return false;
 }
 
-bool ObstacleCells::stays(Entry& entry, const View& view, const LidarRangeImage& rays, float step,
-                          bool passable) const {
+bool ObstacleCells::stays(Entry& entry, const View& view, const LidarRangeImage& rays,
+                          std::span<const Seen> more, float step, bool passable) const {
   const float dx = entry.x() - view.sensor.x(), dy = entry.y() - view.sensor.y();
   const float range = std::sqrt(dx * dx + dy * dy);
   const auto memory = static_cast<float>(params_.memory);
@@ -109,17 +109,21 @@ bool ObstacleCells::stays(Entry& entry, const View& view, const LidarRangeImage&
     entry.stamp = now_;
     return true;
   }
-  if (range > params_.range + kForgetBeyond) return false;
+  if (range > params_.range + kForgetBeyond + view.lidar.head<2>().norm()) return false;
   const Eigen::Vector3f low = view.seen(entry.x(), entry.y(), entry.z_low);
   const Eigen::Vector3f high = low + view.up(entry.z_high - entry.z_low);
   // The robot itself is here, so there is no obstacle.
-  if (body_.depth(low.x(), low.y()) >= kInside) return false;
+  if (body_.depth(low.x() + view.lidar.x(), low.y() + view.lidar.y()) >= kInside) return false;
   if (passable && ++entry.free_hits >= params_.free_hits) return false;
-  if (range < 0.05f || high.z() < (rays.lowest() - 0.01f) * range) {
+  const bool through = std::any_of(more.begin(), more.end(), [&](const Seen& seen) {
+    const Eigen::Vector3f foot = seen.view.seen(entry.x(), entry.y(), entry.z_low);
+    return seen.rays.saw_through(foot, foot + seen.view.up(entry.z_high - entry.z_low), 3.0f * kCell);
+  });
+  if (!through && (range < 0.05f || high.z() < (rays.lowest() - 0.01f) * range)) {
     entry.stamp = now_;  // In the blind spot, where no ray can show that it is free.
     return true;
   }
-  if (rays.saw_through(low, high, 3.0f * kCell)) {
+  if (through || rays.saw_through(low, high, 3.0f * kCell)) {
     if (++entry.free_hits >= params_.free_hits) return false;
   } else if (!passable) {
     entry.free_hits = 0;

@@ -49,8 +49,15 @@ class ObstacleCells {
   /// Adds a return nearly as high as an obstacle; call it after all mark(). A cell with more of these than of
   /// obstacle returns, none of them much too high, holds a stair measured with noise.
   void mark_under(float x, float y);
-  /// Removes cells that are free by now, or at most `step` (m) above the ground as known by now.
-  void keep(const View& view, const LidarRangeImage& rays, const GroundGrid& ground, float step);
+  /// What a further lidar saw.
+  struct Seen {
+    View view{};
+    LidarRangeImage rays{};
+  };
+  /// Removes cells that are free by now, or at most `step` (m) above the ground as known by now. `more`: what
+  /// further lidars saw through.
+  void keep(const View& view, const LidarRangeImage& rays, std::span<const Seen> more,
+            const GroundGrid& ground, float step);
 
   std::span<const Entry> entries() const { return entries_; }
   std::size_t max_cells() const { return max_cells_; }
@@ -60,7 +67,8 @@ class ObstacleCells {
   std::size_t slot(int ix, int iy) const {
     return static_cast<std::size_t>(((ix & mask_) << bits_) | (iy & mask_));
   }
-  bool stays(Entry& entry, const View& view, const LidarRangeImage& rays, float step, bool passable) const;
+  bool stays(Entry& entry, const View& view, const LidarRangeImage& rays, std::span<const Seen> more,
+             float step, bool passable) const;
   bool stray(const Entry& entry, float dx, float dy, float range) const;
 
   Footprint body_;

@@ -115,7 +115,9 @@ void TerrainMap::add_scan(const ScanPoints& scan, const Pose3& body, double stam
   register_scan(body, view, offset);
   const auto aside = static_cast<float>(lidar.head<2>().norm());
   const float blind = rays_.lowest() < 0 ? static_cast<float>(lidar.z()) / -rays_.lowest() + aside : 0.0f;
-  ground_.grow(offset, view.base.z(), view.tilt(), view.sensor.z() - view.base.z(), blind);
+  const Eigen::Vector2f at = view.aside();
+  const float high = view.sensor.z() - view.base.z() - view.tilt().dot(at);
+  ground_.grow(offset, view.base.z(), view.tilt(), {at.x(), at.y(), high}, blind);
   // The standard deviation of the ground's height at range r is r times that of its gradient; that of a
   // return is its noise.
   const float known = ground_.plane().sigma_gradient;
@@ -154,14 +156,27 @@ void TerrainMap::register_scan(const Pose3& body, View& view, GroundGrid::Offset
 void TerrainMap::sort_in(const ScanPoints& scan, const View& view) {
   near_.clear();
   deep_.clear();
-  bool first = true;
+  std::size_t part = 0;
   scan.each_part(platform_.lidar_origin(), [&](auto points, const Eigen::Vector3d& origin) {
-    sort_in(points, origin.cast<float>(), std::exchange(first, false), view);
+    const Eigen::Vector3f sensor = origin.cast<float>();
+    if (part++ == 0) {
+      sort_in(points, sensor, true, rays_, view);
+      near_of_first_ = near_.size();
+      return;
+    }
+    if (more_.size() < part - 1) more_.emplace_back();
+    ObstacleCells::Seen& seen = more_[part - 2];
+    seen.view = view;
+    seen.view.lidar = sensor;
+    seen.view.sensor = view.base + view.turn * sensor;
+    seen.rays.clear();
+    sort_in(points, sensor, false, seen.rays, view);
   });
+  more_.resize(std::max<std::size_t>(part, 1) - 1);
 }
 
-void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& sensor, bool first,
-                         const View& view) {
+void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& sensor, bool deep,
+                         LidarRangeImage& rays, const View& view) {
   const auto range2 = static_cast<float>(params_.range * params_.range);
   const auto min2 = static_cast<float>(params_.min_range * params_.min_range);
   const auto reach2 = static_cast<float>(std::pow(body_.radius(), 2));
@@ -180,7 +195,7 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const Eigen::V
       const float full2 = flat2 + dz * dz;
       // Written so that a NaN fails. A vertical ray has no bearing.
       if (!(full2 > min2 && flat2 > 1e-4f && full2 < 1e6f)) continue;
-      if (first) rays_.add(ray);
+      rays.add(ray);
       const float out2 = p.x() * p.x() + p.y() * p.y();  // From base_link.
       if (out2 <= range2) {
         if (out2 < reach2 && body_.depth(p.x(), p.y()) > 0.0f) continue;
@@ -188,7 +203,7 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const Eigen::V
         ground_.add(world.x(), world.y(), world.z());
         near_.push_back(world);
       } else if (const float end = up.dot(p);
-                 first && end < 0 && above * ray.range < range * (above - end) && deep_.size() < kMaxDeep) {
+                 deep && end < 0 && above * ray.range < range * (above - end) && deep_.size() < kMaxDeep) {
         deep_.push_back(view.base + view.turn * p);
       }
     }
@@ -199,19 +214,20 @@ void TerrainMap::mark_obstacles(const View& view) {
   const auto step = static_cast<float>(limits_.obstacle);
   const auto top = static_cast<float>(limits_.headroom);
   under_.clear();
-  for (const Eigen::Vector3f& p : near_) {
+  for (std::size_t n = 0; n < near_.size(); ++n) {
+    const Eigen::Vector3f& p = near_[n];
     const int index = ground_.window(p.x(), p.y());
     const float climb = p.z() - ground_.before(index);
     if (climb > step) {
       if (climb < top) obstacles_.mark(p.x(), p.y(), p.z(), climb);
     } else if (climb > step / 2) {
       if (under_.size() < under_.capacity()) under_.emplace_back(p.x(), p.y());
-    } else if (climb < 0 && is_below(p) && deep_.size() < kMaxDeep) {
+    } else if (climb < 0 && n < near_of_first_ && is_below(p) && deep_.size() < kMaxDeep) {
       deep_.push_back(p);
     }
   }
   for (const Eigen::Vector2f& p : under_) obstacles_.mark_under(p.x(), p.y());
-  obstacles_.keep(view, rays_, ground_, step);
+  obstacles_.keep(view, rays_, more_, ground_, step);
   std::fill(solid_.begin(), solid_.end(), std::uint8_t{0});
   for (const auto& e : obstacles_.entries())
     if (e.again) solid_[static_cast<std::size_t>(ground_.window(e.x(), e.y()))] = 1;

@@ -25,9 +25,9 @@ class TerrainMap {
 
   explicit TerrainMap(const Platform& platform, const TerrainParams& params = {});
 
-  /// Takes one scan. `points`: base_link, m; not finite, or within min_range of the lidar (which is
-  /// lidar_height above base_link), where there was no return. `body`: base_link, which is on the ground, in
-  /// the odometry frame at the scan's time. `stamp_s`: that time, s, not decreasing.
+  /// Takes one scan; points are not finite, or within min_range of their lidar, where there was no return.
+  /// `body`: base_link, which is on the ground, in the odometry frame at the scan's time. `stamp_s`: that
+  /// time, s, not decreasing.
   void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
 
   /// All places with a cost; valid until the next scan. Layers that share a place have one cell each.
@@ -49,9 +49,9 @@ class TerrainMap {
 
  private:
   void sort_in(const ScanPoints& scan, const View& view);
-  /// Sorts in what one lidar measured from `sensor`, base_link, m; `first`: it is the view's.
-  void sort_in(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& sensor, bool first,
-               const View& view);
+  /// Sorts in what one lidar measured from `sensor`, base_link, m; `deep`: whether its rays show drops.
+  void sort_in(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& sensor, bool deep,
+               LidarRangeImage& rays, const View& view);
   void register_scan(const Pose3& body, View& view, GroundGrid::Offset& offset);
   void mark_obstacles(const View& view);
   /// Whether a return is so far below the ground that the ground is missing there.
@@ -69,8 +69,10 @@ class TerrainMap {
   Drops drops_;
   Surface surface_;
   RayBlock block_{};
-  LidarRangeImage rays_{};
-  std::vector<Eigen::Vector3f> near_{};   ///< Returns within range, in the map frame.
+  LidarRangeImage rays_{};                   ///< Of the first lidar.
+  std::vector<ObstacleCells::Seen> more_{};  ///< Of the others.
+  std::vector<Eigen::Vector3f> near_{};  ///< Returns within range, in the map frame; the first lidar's first.
+  std::size_t near_of_first_{};
   std::vector<Eigen::Vector2f> under_{};  ///< Those of them nearly as high as an obstacle.
   std::vector<Eigen::Vector3f> deep_{};   ///< Returns whose ray went below the ground within range.
   std::vector<std::uint8_t> solid_;       ///< Marks the cells of the ground's window with an obstacle.

@@ -8,18 +8,20 @@
 
 namespace adit::nav {
 
-/// Viewpoint of a scan: the pose of the lidar, which is mounted upright on the body.
+/// Viewpoint of a scan: the place of a lidar, and the axes of the body.
 struct View {
   Eigen::Matrix3f turn{Eigen::Matrix3f::Identity()};  ///< Rotation from base_link to the map.
   Eigen::Vector3f sensor{0, 0, 0};                    ///< Lidar in the map, m.
   Eigen::Vector3f base{0, 0, 0};                      ///< base_link in the map, m.
+  Eigen::Vector3f lidar{0, 0, 0};                     ///< The lidar in base_link, m.
 
   View() = default;
-  /// `lidar`: base_link, m.
-  View(const Pose3& body, const Eigen::Vector3d& lidar)
+  /// `at`: the lidar in base_link, m.
+  View(const Pose3& body, const Eigen::Vector3d& at)
       : turn(body.orientation.toRotationMatrix().cast<float>()),
-        sensor((body * lidar).cast<float>()),
-        base(body.position.cast<float>()) {}
+        sensor((body * at).cast<float>()),
+        base(body.position.cast<float>()),
+        lidar(at.cast<float>()) {}
   void raise(float by) {
     sensor.z() += by;
     base.z() += by;
@@ -33,6 +35,8 @@ struct View {
     turn = rotation * turn;
     sensor = base + rotation * (sensor - base);
   }
+  /// The lidar from base_link, along the map's x and y, m.
+  Eigen::Vector2f aside() const { return (turn * Eigen::Vector3f(lidar.x(), lidar.y(), 0)).head<2>(); }
   /// Converts a point of the map into the lidar's frame.
   Eigen::Vector3f seen(float x, float y, float z) const {
     return turn.transpose() * (Eigen::Vector3f(x, y, z) - sensor);

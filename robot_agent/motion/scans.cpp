@@ -20,7 +20,8 @@ namespace {
 
 constexpr Duration kScanDeadline = 500ms;            // an older scan says nothing of the terrain
 constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the lidar has another clock
-constexpr std::size_t kMaxWaiting = 4;               // sweeps; as many as a lidar of 20 Hz sends meanwhile
+constexpr Duration kPatience = 300ms;                // then no odometry comes
+constexpr std::size_t kMaxWaiting = 16;              // sweeps; those of a lidar of 50 Hz meanwhile
 constexpr std::uint64_t kImuWait = 60'000'000;       // ns; a longer gap is bridged by the driver's odometry
 constexpr Duration kDrivesUnheard = 750ms;           // without odometry, until a robot gets zero
 constexpr int kMaxNotDeskewed = 5;                   // consecutive scans before the operator is warned
@@ -133,7 +134,7 @@ void Scans::take(const nav_msgs::msg::Odometry& odometry, Time received) {
     history_.add(stamp, {at, q.normalized()});
     if (odometry_) odometry_->add(perception::BodyMotion{stamp, {at, q.normalized()}});
     input_.add_odometry(stamp, vector_of(odometry.twist().twist().linear()), Pose3{at, q.normalized()}.yaw());
-    for (std::size_t n = 0; n < waiting_.size(); ++n) pass_on_ready(n);
+    pass_on_ready();
   });
 }
 
@@ -153,16 +154,27 @@ void Scans::two_sources(const std::string& topic, const OneSource& source) {
 void Scans::take(Result<perception::Sweep> sweep, std::size_t lidar, const std::string& frame,
                  Time received) {
   if (!sweep) return refuse(lidars_[lidar].topic, sweep.error());
-  waiting_[lidar].push_back({std::move(*sweep), frame, received});
-  pass_on_ready(lidar);
+  const std::uint64_t end = perception::ScanInput::end_of(*sweep);
+  waiting_[lidar].push_back({std::move(*sweep), end, frame, received});
+  pass_on_ready();
 }
 
-void Scans::pass_on_ready(std::size_t lidar) {
-  auto& waiting = waiting_[lidar];
-  while (!waiting.empty() && (waiting.size() > kMaxWaiting || !is_ahead(waiting.front().sweep))) {
-    const Waiting first = std::move(waiting.front());
-    waiting.pop_front();
-    pass_on(lidar, first);
+bool Scans::must_wait(const std::deque<Waiting>& sweeps) const {
+  return sweeps.empty() || (sweeps.size() <= kMaxWaiting && now() - sweeps.front().received < kPatience &&
+                            is_ahead(sweeps.front().sweep));
+}
+
+void Scans::pass_on_ready() {
+  while (true) {
+    // The first lidar's sweep takes in those of the others: of equal ends it comes last.
+    std::optional<std::size_t> next;
+    for (std::size_t n = waiting_.size(); n-- > 0;)
+      if (!must_wait(waiting_[n]) && (!next || waiting_[n].front().end < waiting_[*next].front().end))
+        next = n;
+    if (!next) return;
+    const Waiting first = std::move(waiting_[*next].front());
+    waiting_[*next].pop_front();
+    pass_on(*next, first);
   }
 }
 

@@ -93,14 +93,16 @@ class Scans : public Component {
  private:
   struct Waiting {
     perception::Sweep sweep{};
+    std::uint64_t end{};  ///< Of the sweep, ns.
     std::string frame{};
     Time received{};
   };
   void take(Result<perception::Sweep> sweep, std::size_t lidar, const std::string& frame, Time received);
   /// Whether the next odometry brings the poses of the sweep's end.
   bool is_ahead(const perception::Sweep& sweep) const;
-  /// Passes on the sweeps of a lidar that need not wait, in their order.
-  void pass_on_ready(std::size_t lidar);
+  /// Passes on the sweeps that need not wait any more, in the order of their ends, the first lidar's last.
+  void pass_on_ready();
+  bool must_wait(const std::deque<Waiting>& sweeps) const;
   void pass_on(std::size_t lidar, const Waiting& waiting);
   /// Moves the odometry to the end of a sweep of the first lidar; makes it when it is the first sweep.
   bool advance_odometry(const perception::Sweep& sweep, const std::string& frame);

@@ -99,7 +99,7 @@ void Notices::localisation(Localisation health, double sigma) const {
 void Notices::place_not_searched(double radius) const {
   to_holder(Severity::error, "place_not_searched", Reason::localisation_lost,
             robot_ + " is lost and may be more than " + std::to_string(std::lround(radius)) +
-                " m from where it was: it does not search its place any more; set where it is by: pose " +
+                " m from where it was: it does not search for its place any more; set where it is by: pose " +
                 robot_ + " X Y YAW");
 }
 

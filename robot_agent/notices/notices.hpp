@@ -41,7 +41,7 @@ class Notices {
   void not_localised_here(const Pose2& guess, const std::string& why) const;
   /// `sigma`: standard deviation of the position, m.
   void localisation(Localisation health, double sigma) const;
-  /// The place of a lost robot is not searched any more: it may be farther away than `radius`, m.
+  /// The place of a lost robot is not searched for any more: it may be farther away than `radius`, m.
   void place_not_searched(double radius) const;
   void wheels_slip(bool flies) const;
   void stuck() const;

@@ -116,7 +116,7 @@ int plan(const PlanOptions& options) {
   const auto files = cloud_files(options.clouds);
   if (!files) return report_error("navtool", files.error());
   nav::LocalNavigation local_navigation(*platform);
-  const Pose3 sensor_in_body{{0, 0, platform->lidar_height}, Eigen::Quaterniond::Identity()};
+  const Pose3 sensor_in_body{platform->lidar_origin(), Eigen::Quaterniond::Identity()};
   bool registered = false;
   for (std::size_t cycle = 0; cycle < files->size(); ++cycle) {
     const auto cloud = read_cloud_file((*files)[cycle]);

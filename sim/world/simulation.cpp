@@ -339,9 +339,16 @@ void Simulation::step() {
   sense();
 }
 
+PointCloud Simulation::ScanJob::compute() const {
+  const Eigen::Vector3d aside(mounted.x(), mounted.y(), 0);
+  PointCloud points = lidar->scan(*world, others, {base * aside, base.orientation}, mounted.z(), seed);
+  for (Eigen::Vector3f& point : points) point += aside.cast<float>();
+  return points;
+}
+
 Simulation::ScanJob Simulation::scan(std::size_t index) const {
-  const double height = robots_[index].body.platform().lidar_height;
-  ScanJob job{world_, robots_[index].lidar, {}, robots_[index].truth.pose, height, 0};
+  const Eigen::Vector3d mounted = robots_[index].body.platform().lidar_origin();
+  ScanJob job{world_, robots_[index].lidar, {}, robots_[index].truth.pose, mounted, 0};
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     if (n == index) continue;
     const Platform& platform = robots_[n].body.platform();

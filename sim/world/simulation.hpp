@@ -114,10 +114,10 @@ class Simulation {
     std::shared_ptr<const LidarPattern> lidar{};
     std::vector<BodyBox> others{};
     Pose3 base{};
-    double height{};
+    Eigen::Vector3d mounted{0, 0, 0};  ///< The lidar in base_link, m.
     std::uint64_t seed{};
     /// Points in base_link, see LidarPattern::scan.
-    PointCloud compute() const { return lidar->scan(*world, others, base, height, seed); }
+    PointCloud compute() const;
   };
   /// The lidar of a robot as the world is now.
   ScanJob scan(std::size_t robot) const;

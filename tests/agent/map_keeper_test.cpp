@@ -99,8 +99,13 @@ TEST_F(MapKeeperTest, WhatMovesIsNoObstacleInIt) {
   auto cloud = std::make_shared<Scan>();
   for (int n = 0; n < 40; ++n) cloud->points.emplace_back(3.0F, -2.0F + 0.1F * static_cast<float>(n), 0.5F);
   for (int n = 0; n < 8; ++n) cloud->points.emplace_back(1.5F, 0.5F + 0.05F * static_cast<float>(n), 0.8F);
-  cloud->movers = {{1.6F, 0.7F, 0.5F}};
+  // The body is elsewhere in its frame, and turned to the left.
+  cloud->body = Pose3::level({10, 5, M_PI / 2}, 0);
+  cloud->movers = {{9.3F, 6.6F, 0.5F}};
   EXPECT_EQ(cloud->lasting().size(), 40U);
+  cloud->isolated.assign(cloud->points.size(), 0);
+  cloud->isolated[3] = 1;
+  EXPECT_EQ(cloud->lasting().size(), 39U) << "dust does not last, too";
   auto job = std::make_shared<MapJob>();
   job->scan = cloud;
   job->origin = {0, 0, 0.5};
@@ -127,6 +132,7 @@ TEST_F(MapKeeperTest, RaysOfASecondLidarBeginWhereItIs) {
   for (int n = 0; n < 20; ++n) {
     auto job = std::make_shared<MapJob>();
     job->scan = scan_of(n < 3);
+    job->origin = {-0.5, 0, 0.5};
     std::optional<MapStep> step;
     service.call(*strand, job, {.deadline = 2s}, [&](const Result<MapStep>& done) { step = done.value(); });
     run(100ms);

@@ -96,12 +96,13 @@ class ScansTest : public testing::Test {
     odometry.twist().twist().angular().z(kTurn);
     scans_.take(odometry, strand_->now());
   }
-  void send_cloud(const std::vector<Eigen::Vector3f>& points, double t, std::int64_t clock_ms = 0) {
+  void send_cloud(const std::vector<Eigen::Vector3f>& points, double t, std::int64_t clock_ms = 0,
+                  std::size_t lidar = 0) {
     std::vector<float> numbers;
     for (const Eigen::Vector3f& p : points) numbers.insert(numbers.end(), {p.x(), p.y(), p.z()});
     auto cloud = cloud_of(numbers);
-    stamp(cloud.header(), at(t, clock_ms), platform_.lidar().frame);
-    scans_.take(cloud, 0, strand_->now());
+    stamp(cloud.header(), at(t, clock_ms), platform_.all_lidars()[lidar].frame);
+    scans_.take(cloud, lidar, strand_->now());
   }
   static std::uint64_t at(double t, std::int64_t clock_ms) {
     return kFirstStamp + static_cast<std::uint64_t>(std::llround(t * 1e9) +
@@ -133,13 +134,16 @@ class ScansTest : public testing::Test {
     return all;
   }
 
-  std::int64_t odometry_clock_{0};  ///< Ahead of the lidar's, ms.
-  Platform platform_ = [] {
+  static Platform robot() {
     Platform p;
     p.max_speed = 1.5;
     p.lidar_height = kLidar;
     return p;
-  }();
+  }
+  explicit ScansTest(Platform platform = robot()) : platform_(std::move(platform)) {}
+
+  std::int64_t odometry_clock_{0};  ///< Ahead of the lidar's, ms.
+  Platform platform_;
   VirtualScheduler scheduler_{1};
   std::unique_ptr<Runtime> machine_{scheduler_.machine("r1", 5s)};
   std::shared_ptr<Strand> strand_{machine_->strand("sensors")};
@@ -208,6 +212,72 @@ TEST_F(ScansTest, SweepsOfALidarWhoseClockIsAheadWaitForTheirPoses) {
   ASSERT_NE(report, nullptr);
   EXPECT_EQ(report->health, Localisation::ok);
   EXPECT_EQ(report->stamp, at(2.8, 0));
+}
+
+TEST_F(ScansTest, OdometryThatStopsHoldsNoSweepBack) {
+  odometry_clock_ = -150;
+  drive(0, 2, 0, [&](double t) { send_cloud(sweep(t), t); });
+  taker_.scans.clear();
+  for (double t = 2.1; t < 4; t += 0.1) {
+    run_until(t);
+    send_cloud(sweep(t), t);
+    if (t < 2.5) continue;
+    ASSERT_FALSE(taker_.scans.empty()) << t;
+    EXPECT_GT(taker_.scans.back().stamp, at(t - 0.45, 0)) << t;
+  }
+}
+
+TEST_F(ScansTest, ALidarOf50HertzWhoseClockIsAheadIsWaitedForAsWell) {
+  odometry_clock_ = -150;
+  const auto one = sweep(0);
+  for (int n = 1; n < 100; ++n) {
+    run_until(0.02 * n);
+    send_odometry(0.02 * n, odometry_clock_);
+    send_cloud(one, 0.02 * n);
+  }
+  ASSERT_FALSE(taker_.scans.empty());
+  EXPECT_TRUE(taker_.scans.back().odometry) << "it has the pose of its time";
+}
+
+class TwoLidarsTest : public ScansTest {
+ protected:
+  static Platform with_rear() {
+    Platform p = robot();
+    LidarConfig front = p.lidar(), rear = front;
+    rear.topic = "rear/points";
+    rear.frame = "rear";
+    rear.mounting.x = -0.4;
+    p.lidars = {front, rear};
+    return p;
+  }
+  TwoLidarsTest() : ScansTest(with_rear()) {}
+};
+
+TEST_F(TwoLidarsTest, SweepsThatWaitedAreMergedWithThoseOfTheirTime) {
+  odometry_clock_ = -50;
+  drive(0, 2, 0, [&](double t) {
+    const auto points = sweep(t);
+    send_cloud(points, t);
+    send_cloud({Eigen::Vector3f(5, static_cast<float>(t), 0)}, t, 0, 1);
+  });
+  // The odometry comes late, and frees two sweeps of each at once.
+  for (const double t : {2.05, 2.1}) {
+    run_until(t);
+    send_cloud(sweep(t), t);
+    send_cloud({Eigen::Vector3f(5, static_cast<float>(t), 0)}, t, 0, 1);
+  }
+  run_until(2.15);
+  for (int n = 101; n <= 108; ++n) send_odometry(0.02 * n, odometry_clock_);
+  run_until(2.17);
+  int merged = 0;
+  for (const LidarScan& scan : taker_.scans) {
+    if (scan.stamp < at(1.0, 0)) continue;
+    ASSERT_EQ(scan.parts.size(), 2U);
+    // The rear sweep holds its own time in y; that of the same time has not been moved.
+    EXPECT_NEAR(scan.points->back().y(), static_cast<double>(scan.stamp - kFirstStamp) * 1e-9, 1e-3);
+    ++merged;
+  }
+  EXPECT_EQ(merged, 13);
 }
 
 TEST_F(ScansTest, TheStepOfAClockIsReportedOnce) {

@@ -25,7 +25,7 @@ void see(GroundGrid& grid, const Height& height, float x, float y, float now, fl
 GroundGrid grid_of(const Height& height, const GroundParams& params = {}) {
   GroundGrid grid(params);
   see(grid, height, 0, 0, 0);
-  grid.grow({}, height(0, 0), {0, 0}, 0.5f, 1.0f);
+  grid.grow({}, height(0, 0), {0, 0}, {0, 0, 0.5f}, 1.0f);
   return grid;
 }
 
@@ -66,7 +66,7 @@ TEST(GroundGrid, ARampSeenByFarRingsIsGround) {
   grid.begin_scan(0, 0, 0);
   for (float x = 0.45f; x < 4; x += 0.5f)
     for (float y = -2; y < 2; y += 0.05f) grid.add(x, y, 0.25f * (x - 0.45f));
-  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
+  grid.grow({}, 0, {0, 0}, {0, 0, 0.5f}, 1.0f);
   EXPECT_NEAR(grid.at(3.45f, 0), 0.75f, 0.01f);
 }
 
@@ -74,14 +74,14 @@ TEST(GroundGrid, ReturnsOfALevelRingAreNoGround) {
   GroundGrid grid({.slope = 0.6f, .rise = 0.245f, .most = 0.45f});
   grid.begin_scan(0, 0, 0);
   for (float y = -2; y < 2; y += 0.05f) grid.add(2.0f, y, 0.65f);
-  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
+  grid.grow({}, 0, {0, 0}, {0, 0, 0.5f}, 1.0f);
   EXPECT_NEAR(grid.at(2.0f, 0), 0.0f, 1e-6f);
 }
 
 TEST(GroundGrid, UnmeasuredGroundFollowsTheBodysAttitude) {
   GroundGrid grid;
   grid.begin_scan(0, 0, 0);
-  grid.grow({}, 0.7f, {0.1f, 0}, 0.5f, 1.0f);
+  grid.grow({}, 0.7f, {0.1f, 0}, {0, 0, 0.5f}, 1.0f);
   EXPECT_NEAR(grid.at(3.05f, -2.0f), 0.7f + 0.3f, 0.01f);
 }
 
@@ -89,12 +89,12 @@ TEST(GroundGrid, ForgetsCellsThatTheRollingWindowOverwrites) {
   GroundGrid grid;
   grid.begin_scan(0, 0, 0);
   for (float j = -1; j < 1; j += 0.05f) grid.add(0.95f, j, 0.05f);
-  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
+  grid.grow({}, 0, {0, 0}, {0, 0, 0.5f}, 1.0f);
   EXPECT_NEAR(grid.at(0.95f, 0), 0.05f, 1e-6f);
   // One torus further the same memory holds other places.
   for (float x = 0; x < 12.85f; x += 0.4f) grid.begin_scan(x, 0, 1);
   grid.begin_scan(12.8f, 0, 1);
-  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
+  grid.grow({}, 0, {0, 0}, {0, 0, 0.5f}, 1.0f);
   EXPECT_NEAR(grid.at(13.75f, 0), 0.0f, 1e-6f);
 }
 
@@ -102,10 +102,10 @@ TEST(GroundGrid, ForgetsOldHeights) {
   GroundGrid grid({.memory = 5.0f});
   grid.begin_scan(0, 0, 0);
   grid.add(0.5f, 0.1f, 0.05f);
-  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
+  grid.grow({}, 0, {0, 0}, {0, 0, 0.5f}, 1.0f);
   EXPECT_NEAR(grid.at(0.5f, 0.1f), 0.05f, 1e-6f);
   grid.begin_scan(0, 0, 6);
-  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
+  grid.grow({}, 0, {0, 0}, {0, 0, 0.5f}, 1.0f);
   EXPECT_NEAR(grid.at(0.5f, 0.1f), 0.0f, 1e-6f);
 }
 

@@ -116,6 +116,34 @@ TEST(LidarMounting, ASecondLidarFreesNothingThatStandsBeforeTheFirst) {
   EXPECT_TRUE(blocked(3.05, 0.4)) << "what the second one sees is there, too";
 }
 
+TEST(LidarMounting, WhatASecondLidarSeesThroughIsFree) {
+  // The first one on the roof sees nothing near the body; the second one below it sees someone who walks on.
+  const Eigen::Vector3d roof(0, 0, 2.0), low(0.3, 0, 0.3);
+  const Platform platform = FrontLidar::platform_with(roof);
+  BoxWorld world{{{6, 6.2, -6, 6}, {-6.2, -6, -6, 6}, {-6, 6, 6, 6.2}, {-6, 6, -6.2, -6}}, 4.0};
+  std::mt19937 random(5);
+  TerrainMap map(platform);
+  const auto look = [&](double time) {
+    auto points = world.scan({}, roof, 16, 900, 0.01, random);
+    std::vector<ScanPart> parts{{roof, points.size()}};
+    const auto more = world.scan({}, low, 16, 900, 0.01, random);
+    points.insert(points.end(), more.begin(), more.end());
+    parts.push_back({low, more.size()});
+    map.add_scan(ScanPoints(points, parts), {}, time);
+    int cells = 0;
+    for (const auto& c : map.cells()) cells += c.cost >= 1 && std::hypot(c.x - 1.5F, c.y) < 0.5F;
+    return cells;
+  };
+  for (int n = 0; n < 5; ++n) EXPECT_EQ(look(0.1 * n), 0);
+  world.boxes.push_back({1.4, 1.6, -0.2, 0.2, 0.0, 0.8});
+  int there = 0;
+  for (int n = 5; n < 10; ++n) there = look(0.1 * n);
+  EXPECT_GT(there, 0);
+  world.boxes.pop_back();
+  for (int n = 10; n < 40; ++n) there = look(0.1 * n);
+  EXPECT_EQ(there, 0);
+}
+
 TEST(LidarMounting, OnlyTheFirstLidarsRaysAreThoseOfOneViewpoint) {
   const TwoLidars both(true);
   EXPECT_EQ(both.scan().first().size(), both.parts[0].count);

@@ -111,7 +111,10 @@ void print(const Options& options, const ExplorationTruth& truth, const Explorat
 int run(const Options& options) {
   auto platform = config::load_platform(options.platform);
   if (!platform) return report_error("exploration_truth", platform.error());
-  if (options.height > 0) platform->lidar_height = options.height;
+  if (options.height > 0) {
+    platform->lidar_height = options.height;
+    if (!platform->lidars.empty()) platform->lidars.front().mounting.z = options.height;
+  }
   auto spec = load_world_spec(options.world);
   if (!spec) return report_error("exploration_truth", spec.error());
   auto world = make_world(*spec);
@@ -119,8 +122,7 @@ int run(const Options& options) {
   auto recorded = read_poses(options.poses);
   if (!recorded) return report_error("exploration_truth", recorded.error());
   if (options.of_lidar)
-    for (Pose3& pose : recorded->poses)
-      pose.position -= pose.orientation * Eigen::Vector3d(0, 0, platform->lidar_height);
+    for (Pose3& pose : recorded->poses) pose.position -= pose.orientation * platform->lidar_origin();
   const ExplorationRobot robot{*platform, recorded->poses.front().planar()};
   auto truth = ExplorationTruth::create(*world, std::span(&robot, 1));
   if (!truth) return report_error("exploration_truth", truth.error());
