@@ -20,6 +20,7 @@ namespace {
 
 constexpr Duration kScanDeadline = 500ms;            // an older scan says nothing of the terrain
 constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the lidar has another clock
+constexpr double kOdometryLate = 0.1;                // s; by the slowest odometry and its way here
 constexpr Duration kPatience = 300ms;                // then no odometry comes
 constexpr std::size_t kMaxWaiting = 16;              // sweeps; those of a lidar of 50 Hz meanwhile
 constexpr std::uint64_t kImuWait = 60'000'000;       // ns; a longer gap is bridged by the driver's odometry
@@ -155,7 +156,10 @@ void Scans::take(Result<perception::Sweep> sweep, std::size_t lidar, const std::
                  Time received) {
   if (!sweep) return refuse(lidars_[lidar].topic, sweep.error());
   const std::uint64_t end = perception::ScanInput::end_of(*sweep);
-  waiting_[lidar].push_back({std::move(*sweep), end, frame, received});
+  const double ahead = end > history_.newest() && history_.newest() != 0
+                           ? static_cast<double>(end - history_.newest()) * 1e-9
+                           : 0.0;
+  waiting_[lidar].push_back({std::move(*sweep), end, ahead, frame, received});
   pass_on_ready();
 }
 
@@ -209,8 +213,8 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
                           state.pose,
                           state.pose * T_driver_base->inverse(),
                           instance_,
-                          at,
-                          state.sigma(),
+                          early_ > 0 && at == Localisation::ok ? Localisation::weak : at,
+                          std::hypot(state.sigma(), platform_.max_speed * early_),
                           state.sigma_seen,
                           state.wheels_slip};
   // Otherwise the driver's frame began again, or it is silent.
@@ -243,7 +247,11 @@ void Scans::pass_on(std::size_t lidar, const Waiting& waiting) {
   const bool located =
       lidar == 0 && waiting.sweep.stamp != 0 && advance_odometry(waiting.sweep, waiting.frame);
   report_clock_steps();
-  if (lidar == 0) compare_clocks(waiting.sweep);
+  if (lidar == 0) {
+    compare_clocks(waiting.sweep);
+    // A sweep that has not ended yet is of another clock; only an odometry that is late looks the same.
+    early_ = waiting.ahead > kOdometryLate ? waiting.ahead : 0.0;
+  }
   auto scan = input_.add(waiting.sweep, lidar, waiting.frame, [&](std::uint64_t stamp) {
     return located ? odometry_->at(stamp) : history_.at(stamp);
   });

@@ -94,6 +94,7 @@ class Scans : public Component {
   struct Waiting {
     perception::Sweep sweep{};
     std::uint64_t end{};  ///< Of the sweep, ns.
+    double ahead{};       ///< How far it ended after the newest odometry when it came, s.
     std::string frame{};
     Time received{};
   };
@@ -135,6 +136,7 @@ class Scans : public Component {
   Time odometry_heard_{};
   /// How far the newest sweep ends after the newest odometry, s. Nothing: that is not heard.
   std::optional<double> ahead_{};
+  double early_{};  ///< How far sweeps end after they come, s; 0 with one clock.
   int apart_{0};  ///< Consecutive sweeps that are of another time than the odometry that was heard with them.
   std::optional<Time> frame_unknown_{};  ///< When the frame of a message was unknown first.
 };
