@@ -59,11 +59,10 @@ void weigh(const GroundView& ground, double z, double least_gain, std::vector<Fr
 
 Explorer::Explorer(const Platform& platform, const ExploreParams& params)
     : params_(params),
-      sensor_(0, 0, platform.lidar().mounting.z),
+      sensor_(platform.lidar_origin()),
       braking_(platform.max_acceleration),
       map_(params.range) {
   const LidarConfig lidar = platform.lidar();
-  sensor_.head<2>() = Eigen::Vector2d(lidar.mounting.x, lidar.mounting.y);
   steepest_ = std::tan(lidar.highest * M_PI / 180.0);
   lowest_ = std::tan(lidar.lowest * M_PI / 180.0);
 }

@@ -165,7 +165,7 @@ void Scans::take(Result<perception::Sweep> sweep, std::size_t lidar, const std::
 
 bool Scans::must_wait(const std::deque<Waiting>& sweeps) const {
   return sweeps.empty() || (sweeps.size() <= kMaxWaiting && now() - sweeps.front().received < kPatience &&
-                            is_ahead(sweeps.front().sweep));
+                            is_ahead(sweeps.front()));
 }
 
 void Scans::pass_on_ready() {
@@ -182,22 +182,22 @@ void Scans::pass_on_ready() {
   }
 }
 
-bool Scans::is_ahead(const perception::Sweep& sweep) const {
-  if ((!sweep.timed && instance_ == 0) || history_.newest() == 0) return false;
-  const std::uint64_t end = perception::ScanInput::end_of(sweep);
+bool Scans::is_ahead(const Waiting& waiting) const {
+  if ((!waiting.sweep.timed && instance_ == 0) || history_.newest() == 0) return false;
+  const std::uint64_t end = waiting.end;
   if (end > history_.newest()) return end - history_.newest() <= kLongestWait;
   // The odometry of its own also waits for the IMU, which may have a gap.
   return odometry_ && !odometry_->covers(end) && history_.newest() - end < kImuWait;
 }
 
-bool Scans::advance_odometry(const perception::Sweep& sweep, const std::string& frame) {
+bool Scans::advance_odometry(const Waiting& waiting) {
   if (instance_ == 0) return false;
   if (!odometry_) {
     auto params = perception::LidarOdometryParams::of(platform_);
-    params.planar = input_.is_planar(sweep, 0, frame);
+    params.planar = input_.is_planar(waiting.sweep, 0, waiting.frame);
     odometry_.emplace(params);
   }
-  return odometry_->advance(perception::ScanInput::end_of(sweep));
+  return odometry_->advance(waiting.end);
 }
 
 std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
@@ -244,11 +244,10 @@ void Scans::report_clock_steps() {
 
 void Scans::pass_on(std::size_t lidar, const Waiting& waiting) {
   // One clock for all, as without it nothing can be deskewed.
-  const bool located =
-      lidar == 0 && waiting.sweep.stamp != 0 && advance_odometry(waiting.sweep, waiting.frame);
+  const bool located = lidar == 0 && waiting.sweep.stamp != 0 && advance_odometry(waiting);
   report_clock_steps();
   if (lidar == 0) {
-    compare_clocks(waiting.sweep);
+    compare_clocks(waiting.end);
     // A sweep that has not ended yet is of another clock; only an odometry that is late looks the same.
     early_ = waiting.ahead > kOdometryLate ? waiting.ahead : 0.0;
   }
@@ -258,7 +257,7 @@ void Scans::pass_on(std::size_t lidar, const Waiting& waiting) {
   if (!scan) return refuse(lidars_[lidar].topic, scan.error());
   if (!*scan) return;  // A scan is made when the first lidar's sweep comes.
   perception::Scan& complete = **scan;
-  judge_clock(waiting.sweep, complete.deskewed);
+  judge_clock(waiting, complete.deskewed);
   for (const perception::ScanWarning& warning : complete.warnings)
     warn(lidars_[lidar].topic, warning.code, warning.reason, warning.text);
   std::optional<OdometryReport> report;
@@ -271,8 +270,8 @@ void Scans::pass_on(std::size_t lidar, const Waiting& waiting) {
        {.deadline = kScanDeadline}, [](const Result<void>&) {});
 }
 
-void Scans::compare_clocks(const perception::Sweep& sweep) {
-  const std::uint64_t end = perception::ScanInput::end_of(sweep), newest = history_.newest();
+void Scans::compare_clocks(std::uint64_t end) {
+  const std::uint64_t newest = history_.newest();
   ahead_.reset();
   // Odometry that is not heard any more says nothing about its clock.
   if (newest == 0 || now() - odometry_heard_ >= kOdometryHeard) return;
@@ -280,10 +279,10 @@ void Scans::compare_clocks(const perception::Sweep& sweep) {
   apart_ = *ahead_ > kPairedWithin || *ahead_ < -kClocksApart ? apart_ + 1 : 0;
 }
 
-void Scans::judge_clock(const perception::Sweep& sweep, bool deskewed) {
-  const bool stamped = perception::ScanInput::end_of(sweep) != 0, apart = apart_ >= kScansApart;
+void Scans::judge_clock(const Waiting& waiting, bool deskewed) {
+  const bool stamped = waiting.end != 0, apart = apart_ >= kScansApart;
   // The first sweep begins before the first pose.
-  const bool bad = ahead_ && (apart || (sweep.timed && !deskewed));
+  const bool bad = ahead_ && (apart || (waiting.sweep.timed && !deskewed));
   not_deskewed_ = bad ? not_deskewed_ + 1 : 0;
   if (not_deskewed_ < kMaxNotDeskewed) return;
   char text[200];

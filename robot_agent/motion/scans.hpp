@@ -100,23 +100,23 @@ class Scans : public Component {
   };
   void take(Result<perception::Sweep> sweep, std::size_t lidar, const std::string& frame, Time received);
   /// Whether the next odometry brings the poses of the sweep's end.
-  bool is_ahead(const perception::Sweep& sweep) const;
+  bool is_ahead(const Waiting& waiting) const;
   /// Passes on the sweeps that need not wait any more, in the order of their ends, the first lidar's last.
   void pass_on_ready();
   bool must_wait(const std::deque<Waiting>& sweeps) const;
   void pass_on(std::size_t lidar, const Waiting& waiting);
   /// Moves the odometry to the end of a sweep of the first lidar; makes it when it is the first sweep.
-  bool advance_odometry(const perception::Sweep& sweep, const std::string& frame);
+  bool advance_odometry(const Waiting& waiting);
   /// Where the scan was taken. With a clock of its own, the driver's newest pose stands for that of the
   /// scan's time, and the report is `weak` at best.
   std::optional<OdometryReport> locate(const perception::Scan& scan);
   void report_clock_steps();
   void refuse(const std::string& topic, const Error& error);
   void warn(const std::string& topic, const char* code, Reason reason, const std::string& text);
-  /// Compares the times of a sweep of the first lidar and of the odometry that was heard with it.
-  void compare_clocks(const perception::Sweep& sweep);
+  /// Compares the end of a sweep of the first lidar, ns, and the time of the odometry that was heard with it.
+  void compare_clocks(std::uint64_t end);
   /// Warns of scans that cannot be corrected for motion.
-  void judge_clock(const perception::Sweep& sweep, bool deskewed);
+  void judge_clock(const Waiting& waiting, bool deskewed);
 
   std::vector<LidarConfig> lidars_;
   const ScanService& output_;
