@@ -104,7 +104,7 @@ UnitParams Agent::Impl::sensors_unit() {
           inputs.report(fault, strand.now());
         },
         context->static_frames->all(), params.perception == PerceptionLevel::off ? 0 : ++context->odometries,
-        params.perception == PerceptionLevel::off ? nullptr : &context->found_place);
+        params.perception == PerceptionLevel::off ? nullptr : &context->place.found_place);
   };
   unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
     auto readers = read_sensors(
@@ -154,9 +154,9 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
     e.notifier->to_all(Severity::error, "findings_damaged", Reason::cannot_read, params.name + ": " + lost);
 
   if (params.perception != PerceptionLevel::off) {
-    e.keyframes = std::make_unique<KeyframeStore>(params.disk, strand, disk_strand);
-    e.keyframes->load();
-    if (const std::string lost = e.keyframes->text(); !lost.empty())
+    e.place.keyframes = std::make_unique<KeyframeStore>(params.disk, strand, disk_strand);
+    e.place.keyframes->load();
+    if (const std::string lost = e.place.keyframes->text(); !lost.empty())
       e.notifier->to_all(Severity::error, "keyframes_damaged", Reason::cannot_read,
                          params.name + ": " + lost);
   }
@@ -231,11 +231,8 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
          if (e.command_component) e.command_component->keep();
          e.keeper->when_safe(std::move(task));
        },
-       [with_command](const Eigen::Vector3d& goal, const auto& done) {
-         with_command([&](CommandComponent& component) { component.find_route(goal, done); });
-       },
-       [with_command](const Eigen::Vector3d& goal, bool replace, const auto& done) {
-         with_command([&](CommandComponent& component) { component.check_goal(goal, replace, done); });
+       [with_command](const Command& received, const auto& answered) {
+         with_command([&](CommandComponent& component) { component.handle(received, answered); });
        },
        [&e](const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from, Time received) {
          if (beacon)

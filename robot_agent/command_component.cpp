@@ -35,6 +35,7 @@ constexpr Duration kBeat = 50ms;  // Tree, mux, follower and driver run at 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
 constexpr Duration kPulse = 50ms;
+constexpr Duration kLookAhead = 1s;   // Between two updates of what stations should get first.
 constexpr double kRouteAhead = 20.0;  // m of the route: right of way looks so far ahead.
 constexpr double kBeaconAge = 1.0;    // s: an older beacon of a robot that moves does not say where it is.
 
@@ -46,6 +47,8 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
       params_(params),
       context_(context),
       frames_(params.start, params.platform, params.start_height),
+      router_(command, log(), params_.platform, frames_, context.router.get(),
+              {[this] { return navigation_.route_areas(); }, [this] { return team(now()); }}),
       navigation_(navigation_params(params), command, log(), frames_, context.planner, context.router.get(),
                   navigation_outputs()),
       mux_(navigation_),
@@ -55,12 +58,15 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
                     context.peers, right_of_way_outputs()),
       behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, frames_, context.instances++), behaviour_, command_outputs()),
+      map_commands_(commands_,
+                    {[this](const auto&... goal) { router_.check_goal(goal...); },
+                     [this](const auto&... goal) { router_.find_route(goal...); }, [this] { return now(); }}),
       notices_(params.name, *context.notifier, log(), [this] { return commands_.authority().holder_name(); }),
       safeguards_(params.safeguards, params.name, frames_.T_map_start(),
                   {commands_.authority(), context.peers, behaviour_, frames_, notices_}),
+      localiser_(params_, command, log(), frames_, context.place, notices_, localiser_outputs()),
       telemetry_({*context.radio, *context.wire, context.rate, *context.driver, *context.watch, frames_,
                   commands_, behaviour_}),
-      correction_(params.platform),
       rivals_(now()),
       topics_(used_topics(params.platform, params.velocity)) {}
 
@@ -88,78 +94,8 @@ void Agent::CommandComponent::commands(const std::function<void(CommandInterface
   protect([&] { use(commands_); });
 }
 
-void Agent::CommandComponent::find_route(const Eigen::Vector3d& goal,
-                                         std::function<void(const Result<PlannedRoute>&)> done) {
-  protect([&] {
-    if (!goal.head<2>().allFinite() || std::isinf(goal.z()))
-      return done({Reason::out_of_range, "a place has finite coordinates"});
-    if (!context_.router)
-      return done({Reason::not_supported, "this robot has no router: its platform says none"});
-    if (!frames_.initialised()) return done({Reason::no_localisation, "the robot does not know where it is"});
-    RouteQuery query{};
-    query.odom_epoch = frames_.odom_epoch();
-    query.from = frames_.T_odom_base().position;
-    query.to = frames_.to_odom(goal);
-    query.areas = navigation_.route_areas();
-    call(context_.router->find, query, {.deadline = 500ms},
-         [this, epoch = query.odom_epoch, done = std::move(done)](const Result<nav::Route>& route) {
-           if (!route) return done({Reason::no_answer, "the router does not answer; see health"});
-           if (epoch != frames_.odom_epoch())
-             return done({Reason::odometry_jumped, "the odometry jumped meanwhile"});
-           done(planned_route(*route, frames_));
-         });
-  });
-}
-
-void Agent::CommandComponent::check_goal(const Eigen::Vector3d& goal, bool replace,
-                                         std::function<void(const Result<GoalReport>&)> done) {
-  protect([&] {
-    if (!context_.router || !frames_.initialised() || params_.platform.flies() ||
-        !(goal.head<2>().norm() <= kFarthestPlace) || std::isinf(goal.z()))
-      return done({Reason::not_supported, "the goal is not judged"});
-    GoalQuery query{};
-    query.odom_epoch = frames_.odom_epoch();
-    query.from = frames_.T_odom_base().position;
-    query.to = frames_.to_odom(goal);
-    query.areas = navigation_.route_areas();
-    query.replace = replace;
-    // The command waits for this, and each command is answered within 150 ms (rule 3): a router that is busy
-    // judges the goal with the next route.
-    call(context_.router->check, query, {.deadline = 100ms},
-         [this, goal, epoch = query.odom_epoch,
-          done = std::move(done)](const Result<nav::GoalFinding>& found) {
-           if (!found) return done(found.error());
-           if (epoch != frames_.odom_epoch())
-             return done({Reason::odometry_jumped, "the odometry jumped meanwhile"});
-           done(goal_report(*found, goal, frames_));
-         });
-  });
-}
-
-void Agent::CommandComponent::explore(const NextPlaceQuery& asked,
-                                      std::function<void(const Result<nav::ExploreStep>&)> done) {
-  ExploreQuery query{};
-  query.place = frames_.T_odom_base().position;
-  query.blocked = asked.blocked;
-  query.begins = asked.begins;
-  query.areas = navigation_.route_areas();
-  if (!asked.area.empty()) {
-    const nav::Area* area = navigation_.route_areas().all.find(asked.area);
-    if (!area) return done({Reason::outside_area, "the area " + asked.area + " was removed"});
-    nav::Area within = *area;
-    within.kind = nav::AreaKind::keep_in;
-    (void)query.within.add(std::move(within));
-  }
-  query.odom_epoch = frames_.odom_epoch();
-  query.made = now();
-  call(context_.router->explore, query, {.deadline = 2s},
-       [this, epoch = query.odom_epoch, done = std::move(done)](const Result<nav::ExploreStep>& found) {
-         if (!found) return done(found);
-         if (epoch != frames_.odom_epoch()) return;
-         nav::ExploreStep step = *found;
-         if (step.goal) step.goal = frames_.to_map(*step.goal);
-         done(step);
-       });
+void Agent::CommandComponent::handle(const Command& command, const MapCommands::Answered& answered) {
+  protect([&] { map_commands_.handle(command, answered); });
 }
 
 bool Agent::CommandComponent::same_boot() const {
@@ -182,7 +118,7 @@ void Agent::CommandComponent::restore() {
   commands_.restore(s.authority, s.answers,
                     started_);  // listen_first() checks which stations were heard since.
   note_holder();
-  if (s.place) restore_place(*s.place);
+  if (s.place) localiser_.restore(*s.place, context_.instances == 1);
   // Without a stored pose it is unknown whether the odometry frame is still the same. With one, the first
   // odometry sample decides.
   const bool comparable = s.place && s.place->newest;
@@ -196,20 +132,22 @@ void Agent::CommandComponent::restore() {
 Result<void> Agent::CommandComponent::on_start() {
   started_ = now();
   restore();
-  navigation_.on_failure([this](const ComponentFailure& f) { fail(f.component + ": " + f.text); });
-  navigation_.set_generation(generation());
-  if (const auto started = navigation_.start(); !started) return started;
+  for (Component* part : parts()) {
+    part->on_failure([this](const ComponentFailure& f) { fail(f.component + ": " + f.text); });
+    part->set_generation(generation());
+    if (const auto started = part->start(); !started) return started;
+  }
   offer(context_.scans, [this](LidarScan lidar, const Reply<void>& reply) {
-    scan(std::move(lidar));
+    localiser_.scan(std::move(lidar));
     reply({});
   });
   offer(context_.frames.find,
         [this](MapFrameQuery, const Reply<MapFrame>& reply) { reply(frames_.map_frame()); });
-  offer(context_.frames.correct,
-        [this](const MapFrame& corrected, const Reply<MapFrame>& reply) { reply(correct_map(corrected)); });
+  offer(context_.frames.correct, [this](const MapFrame& corrected, const Reply<MapFrame>& reply) {
+    reply(localiser_.correct_map(corrected));
+  });
   context_.command_component = this;
   context_.driver->write({});
-  context_.radio->forget_judgements();  // Of the component before this one: they never end.
   if (context_.instances == 1)
     context_.radio->send_capabilities(params_.platform, params_.id, kProtocolVersion, behaviour_.table());
   behaviour_.tick(now());
@@ -219,7 +157,7 @@ Result<void> Agent::CommandComponent::on_start() {
   telemetry_.start(now(), started_);
   timers_.push_back(every(kBeat, [this] { beat(); }));
   timers_.push_back(every(kStatePeriod, [this] {
-    telemetry_.send_state(now(), safeguards_.charge(), localisation(now()), place_sigma());
+    telemetry_.send_state(now(), safeguards_.charge(), localiser_.health(now()), localiser_.sigma());
     telemetry_.send_route(now(), followed_route(now()));
     context_.directory.tick(now());
     send_beacon(now());
@@ -236,14 +174,31 @@ Result<void> Agent::CommandComponent::on_start() {
 void Agent::CommandComponent::on_stop() {
   context_.command_component = nullptr;
   timers_.clear();
-  navigation_.stop();
+  for (Component* part : parts()) part->stop();
   context_.driver->write({});
+}
+
+Localiser::Outputs Agent::CommandComponent::localiser_outputs() {
+  return {[this](Reason why) { behaviour_.hold(why, now()); }, [this] { navigation_.clear(); },
+          [this] { keep(); }, [this] { return navigation_.movers(now()); },
+          [this](std::shared_ptr<Scan> scan, const LidarScan& lidar) { located(std::move(scan), lidar); }};
+}
+
+void Agent::CommandComponent::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp,
+                                       Time received) {
+  localiser_.odometry(odom, twist, stamp, received);
+}
+
+void Agent::CommandComponent::located(std::shared_ptr<Scan> scan, const LidarScan& lidar) {
+  if (lidar.odometry) watch_grip(*lidar.odometry, now());
+  if (localiser_.recognised()) add_to_map(scan);
+  navigation_.add_scan(std::move(scan), lidar.received, now(), team(now()));
 }
 
 void Agent::CommandComponent::beat() {
   const Time at = now();
   watch_driver();
-  watch_localisation(now());
+  localiser_.watch(now());
   watch_namesakes(at);
   listen_first(at);
   convoy_.tick(at);
@@ -252,7 +207,7 @@ void Agent::CommandComponent::beat() {
   behaviour_.tick(at);
   navigation_.limit_speed(
       std::min(convoy_.speed_limit(behaviour_.mode().name == "convoy_follow"), right_of_way_.speed_limit()));
-  navigation_.set_areas(behaviour_.areas(), place_sigma());
+  navigation_.set_areas(behaviour_.areas(), localiser_.sigma());
   mux_.step(at);
   navigation_.step(at);
   keep();
@@ -273,7 +228,7 @@ void Agent::CommandComponent::listen_first(Time at) {
 
 void Agent::CommandComponent::keep() {
   context_.keeper->save(
-      {commands_.stored(), behaviour_.stored(), params_.boot, safeguards_.stored(), stored_place(), {}},
+      {commands_.stored(), behaviour_.stored(), params_.boot, safeguards_.stored(), localiser_.stored(), {}},
       [this] { return commands_.stored_answers(); }, commands_.accepted());
 }
 
@@ -343,12 +298,9 @@ void Agent::CommandComponent::send_beacon(Time at) {
 Facts Agent::CommandComponent::sense(Time now) const {
   Facts f{};
   f.driver_alive = frames_.alive(now);
-  f.localised = frames_.initialised() && localisation(now) != Localisation::lost && context_.place.known();
-  if (!context_.place.known())
-    f.unlocalised = context_.place.why();
-  else if (localisation(now) == Localisation::lost)
-    f.unlocalised = Reason::localisation_lost;
-  else if (f.localised && navigation_.is_far_out()) {
+  f.unlocalised = localiser_.unknown_because(now);
+  f.localised = frames_.initialised() && f.unlocalised == Reason::none;
+  if (f.localised && navigation_.is_far_out()) {
     f.localised = false;
     f.unlocalised = Reason::outside_area;
   }
@@ -383,13 +335,13 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
                            {}};
   // A flying robot keeps its height.
   if (params_.platform.flies()) inputs.height = [this] { return frames_.height(); };
-  inputs.set_pose = [this](const Pose2& pose) { return set_pose(pose); };
+  inputs.set_pose = [this](const Pose2& pose) { return localiser_.set_pose(pose); };
   inputs.pose = [this]() -> std::optional<Pose2> {
     if (!frames_.initialised()) return std::nullopt;
     return frames_.T_map_base();
   };
   if (context_.router && !params_.platform.flies())
-    inputs.explore = [this](const NextPlaceQuery& asked, auto done) { explore(asked, std::move(done)); };
+    inputs.explore = [this](const NextPlaceQuery& asked, const auto& done) { router_.explore(asked, done); };
   inputs.holder_heard = [this] {
     constexpr Duration kHeard = 3s;
     const Authority& authority = commands_.authority();
@@ -408,7 +360,7 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
   };
   inputs.goal_permitted = [this](const nav::AreaSet& areas, const Eigen::Vector3d& goal) {
     const double z = std::isfinite(goal.z()) ? goal.z() : frames_.height();
-    return areas.with_margin(Fence::margin(place_sigma()))
+    return areas.with_margin(Fence::margin(localiser_.sigma()))
         .permits({goal.x(), goal.y(), z}, nav::least_reach(params_.platform));
   };
   return inputs;
@@ -427,7 +379,7 @@ Convoy::Inputs Agent::CommandComponent::convoy_inputs() {
 
 RightOfWay::Outputs Agent::CommandComponent::right_of_way_outputs() {
   return {[this](const nav::Corridor& corridor, const std::string& asker, auto done) {
-            find_clear_place(corridor, asker, std::move(done));
+            router_.find_clear_place(corridor, asker, std::move(done));
           },
           [this](Time at) { return behaviour_.clear_way(at); }, [this](Time at) { behaviour_.resume(at); },
           [this](const auto&... notice) { notices_.to_holder(notice...); }};
@@ -481,29 +433,6 @@ std::vector<TeamRobot> Agent::CommandComponent::team(Time at) const {
   return robots;
 }
 
-void Agent::CommandComponent::find_clear_place(const nav::Corridor& corridor, const std::string& asker,
-                                               std::function<void(std::optional<Eigen::Vector2d>)> done) {
-  if (!context_.router || !frames_.initialised()) return done(std::nullopt);
-  ClearPlaceQuery query{};
-  query.odom_epoch = frames_.odom_epoch();
-  query.query.from = frames_.T_odom_base().position;
-  for (const Eigen::Vector2d& point : corridor.route)
-    query.query.corridor.route.push_back(frames_.to_odom(point));
-  query.query.corridor.width = corridor.width;
-  query.query.radius = std::hypot(params_.platform.length, params_.platform.width) / 2;
-  query.team = team(now());
-  query.areas = navigation_.route_areas();
-  for (TeamRobot& robot : query.team)
-    if (robot.name == asker) robot.cost = nav::kNoWay;
-  call(context_.router->clear, query, {.deadline = 1s},
-       [this, epoch = query.odom_epoch,
-        done = std::move(done)](const Result<std::optional<Eigen::Vector3d>>& found) {
-         if (epoch != frames_.odom_epoch()) return;
-         if (!found || !*found) return done(std::nullopt);
-         done(Eigen::Vector2d(frames_.to_map(**found).head<2>()));
-       });
-}
-
 Behaviour::Outputs Agent::CommandComponent::behaviour_outputs() {
   return {[this](const auto&... notice) { notices_.to_holder(notice...); },
           [this] { telemetry_.send_behaviour(now()); }};
@@ -518,6 +447,51 @@ Navigation::Outputs Agent::CommandComponent::navigation_outputs() {
             notices_.warning(warning,
                              params_.platform.manual_collision_stop || behaviour_.mode().name != "manual");
           }};
+}
+
+void Agent::CommandComponent::watch_grip(const OdometryReport& report, Time at) {
+  if (std::exchange(modes_seen_, behaviour_.modes_begun()) != behaviour_.modes_begun()) grip_.begin_mode();
+  const auto event = grip_.note(report.wheels_slip, report.T_local_base.position, at);
+  if (event == GripWatch::Event::slips) notices_.wheels_slip(params_.platform.flies());
+  if (event != GripWatch::Event::stuck || !behaviour_.mode().autonomous()) return;
+  behaviour_.hold(Reason::stuck, at);
+  notices_.stuck();
+}
+
+void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan) {
+  const Localisation health = localiser_.health(now());
+  // A map made by a pose that is lost would be wrong for ever.
+  if (!context_.map || health == Localisation::lost || health == Localisation::starting) return;
+  auto job = context_.map->job(scan, team(now()), frames_.odom_epoch(), now());
+  if (!job) return;
+  call(context_.map_insertion, std::move(job), {.deadline = 2s},
+       [this](const Result<MapStep>& step) { context_.map->taken(step, frames_.map_frame()); });
+}
+
+void Agent::CommandComponent::send_content() {
+  if (context_.map && frames_.initialised()) {
+    context_.map->follow(frames_.map_frame());
+    if (context_.map->is_behind() && now() - looked_ahead_ >= kLookAhead) {
+      looked_ahead_ = now();
+      contract::Route route = followed_route(now());
+      if (route.points.empty()) route.points.push_back(frames_.to_map(frames_.T_odom_base().position));
+      context_.map->look_ahead(route.points);
+    }
+  }
+  if (context_.content->needs_carriers(now()) && context_.peers.carrier_present())
+    context_.radio->reach_carriers();
+  send_pieces();
+}
+
+void Agent::CommandComponent::send_pieces() {
+  protect([&] {
+    const wire::SenderState link = context_.wire->sender();
+    for (const transfer::Piece& piece : context_.content->due(now(), link))
+      context_.radio->send(piece, context_.content->session());
+    if (!context_.carrier) return;
+    if (const auto receipts = context_.carrier->due(now(), link.link != nullptr ? link.link->bandwidth : 0.0))
+      context_.radio->send(context_.carrier->id(), *receipts);
+  });
 }
 
 std::string Agent::CommandComponent::at_console(const std::string& line) {

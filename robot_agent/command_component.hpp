@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -9,6 +10,7 @@
 #include "robot_agent/agent.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
+#include "robot_agent/command/map_commands.hpp"
 #include "robot_agent/common/rate_limit.hpp"
 #include "robot_agent/content/content_sender.hpp"
 #include "robot_agent/convoy/convoy.hpp"
@@ -21,15 +23,13 @@
 #include "robot_agent/motion/grip_watch.hpp"
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
-#include "robot_agent/motion/pose_correction.hpp"
 #include "robot_agent/motion/rival.hpp"
+#include "robot_agent/motion/router_client.hpp"
 #include "robot_agent/motion/scans.hpp"
 #include "robot_agent/motion/topic_types.hpp"
 #include "robot_agent/notices/notices.hpp"
-#include "robot_agent/perception/keyframe_store.hpp"
 #include "robot_agent/perception/map_keeper.hpp"
-#include "robot_agent/perception/place_agreement.hpp"
-#include "robot_agent/perception/place_check.hpp"
+#include "robot_agent/place/localiser.hpp"
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
 #include "robot_agent/safeguard/safeguards.hpp"
@@ -38,10 +38,6 @@
 #include "robot_agent/supervisor/agent_supervisor.hpp"
 #include "robot_agent/team/beacon_rate.hpp"
 #include "robot_agent/telemetry/telemetry.hpp"
-
-namespace adit::perception {
-struct RecognisedPlace;
-}
 
 namespace adit::agent {
 
@@ -67,12 +63,8 @@ struct Agent::Context {
   PlanService planner{"planner", 2};        ///< The services are callable from any thread.
   std::unique_ptr<RouteServices> router{};  ///< Null: this robot has no router.
   ScanService scans{"scan", 4};
-  FoundPlaceService found_place{"found place", 2};
-  /// Null with `perception: off`.
-  std::unique_ptr<KeyframeStore> keyframes{};
-  PlaceCheck place{};
-  PoseCorrection::Account odometry{};  ///< As of the last report.
-  std::uint32_t odometries{};          ///< Instances of the odometry so far; by the sensors component only.
+  PlaceMemory place{};
+  std::uint32_t odometries{};  ///< Instances of the odometry so far; by the sensors component only.
   FrameServices frames{};
   std::unique_ptr<MapKeeper> map{};          ///< Null: this robot makes no map.
   std::unique_ptr<Carrier> carrier{};        ///< Null: this robot carries no maps.
@@ -94,7 +86,6 @@ class Agent::CommandComponent : public Component {
                    Context& context);
 
   void odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received);
-  void scan(LidarScan lidar);
   void battery(float charge);
   void external(const Twist2& velocity, Time received);
   /// Reports another participant that writes velocities to this robot's driver.
@@ -102,13 +93,8 @@ class Agent::CommandComponent : public Component {
   /// Reports that what a robot or station announced of itself is ignored, once in 10 s.
   void announcement_refused(const std::string& name, const std::string& why);
   void commands(const std::function<void(CommandInterface&)>& use);
-  /// Asks the robot's global planner for a route to `goal` (map frame, m) and calls `done` exactly once,
-  /// within 0.5 s.
-  void find_route(const Eigen::Vector3d& goal, std::function<void(const Result<PlannedRoute>&)> done);
-  /// Judges a goal (map frame, m) by the router's map and calls `done` exactly once, within 0.5 s. `replace`:
-  /// the report may name the nearest valid place instead. Error: the goal could not be judged.
-  void check_goal(const Eigen::Vector3d& goal, bool replace,
-                  std::function<void(const Result<GoalReport>&)> done);
+  /// Handles a command; see MapCommands::handle().
+  void handle(const Command& command, const MapCommands::Answered& answered);
   std::string at_console(const std::string& line);
   /// Stores the state that must survive a restart.
   void keep();
@@ -124,52 +110,21 @@ class Agent::CommandComponent : public Component {
   void restore();
   /// Whether the restored state is from the computer's present boot.
   bool same_boot() const;
+  /// The components that live and fail with this one.
+  std::array<Component*, 3> parts() { return {&router_, &navigation_, &localiser_}; }
   void beat();
   void listen_first(Time at);
-  /// Whether the robot has an odometry of its own beside the driver's.
-  bool localises() const { return params_.perception != PerceptionLevel::off; }
-  Localisation localisation(Time at) const;
-  /// Standard deviation of the position, m; infinite: the robot does not know where it is.
-  double place_sigma() const;
   /// The route that the robot follows at this time.
   contract::Route followed_route(Time at) const;
   /// Notifies the holder when the wheels slip, and ends an autonomous mode when the body is stuck.
   void watch_grip(const OdometryReport& report, Time at);
-  /// Notifies the holder when the odometry becomes weak or lost, and when it is well again.
-  void watch_localisation(Time at);
-  StoredFrames stored_place() const;
-  /// Restores frames and odometry after a restart; the robot then recognises its surroundings, or holds.
-  void restore_place(const StoredFrames& stored);
-  /// Compares a scan with the stored keyframes.
-  void compare_place(const std::shared_ptr<const Scan>& scan);
-  void place_compared(const Result<perception::RecognisedPlace>& found);
-  /// Compares a scan of a robot that is lost with all that it saw nearby, once a second.
-  void search_place(const std::shared_ptr<const Scan>& scan);
-  /// `sigma`: of the guess but for what moved it unseen, m.
-  void place_found(const Result<perception::RecognisedPlace>& found, const Pose3& guess, double sigma);
-  /// Moves the odometry. `correction`: in odom.
-  void correct_odometry(const Pose3& correction, double sigma, double sigma_heading);
-  /// An operator said where a lost robot is: its odometry goes on from there.
-  void place_set();
-  /// Zero and hold until an operator sets the pose.
-  void place_unknown(const std::string& why);
   void watch_driver();
   /// Looks at who else uses the topics of the robot domain.
   void watch_topics(Time at);
-  /// Handles odometry that started again elsewhere: zero, hold, and a new local map.
-  void odometry_jumped();
-  Result<void> set_pose(const Pose2& pose);
-  /// See ModeContext::explore.
-  void explore(const NextPlaceQuery& asked, std::function<void(const Result<nav::ExploreStep>&)> done);
-  Result<MapFrame> correct_map(const MapFrame& corrected);
-  /// Whether the stamp is slightly newer than the odometry, so that the next sample gives the pose at that
-  /// time.
-  bool is_ahead(std::uint64_t stamp) const;
-  void add_waiting_scan();
   /// Keeps the robot in hold while it gives way to another one of its name.
   void watch_namesakes(Time at);
-  /// Has a keyframe made of a scan when the robot moved far enough since the last one.
-  void make_keyframe(const std::shared_ptr<const Scan>& scan);
+  /// Takes a scan with its poses.
+  void located(std::shared_ptr<Scan> scan, const LidarScan& lidar);
   /// Offers a scan to the map, in the odometry frame.
   void add_to_map(const std::shared_ptr<const Scan>& scan);
   /// Sends findings and maps to the stations, or its map to carriers, as the link allows.
@@ -183,41 +138,34 @@ class Agent::CommandComponent : public Component {
   Behaviour::Inputs behaviour_inputs();
   Behaviour::Outputs behaviour_outputs();
   Navigation::Outputs navigation_outputs();
+  Localiser::Outputs localiser_outputs();
   Convoy::Inputs convoy_inputs();
   RightOfWay::Outputs right_of_way_outputs();
   /// Lets RightOfWay look at the other robots.
   void give_way(Time at);
   /// The other robots for the router, odometry frame.
   std::vector<TeamRobot> team(Time at) const;
-  void find_clear_place(const nav::Corridor& corridor, const std::string& asker,
-                        std::function<void(std::optional<Eigen::Vector2d>)> done);
 
   AgentParams params_;
   Context& context_;
   Frames frames_;
+  RouterClient router_;
   Navigation navigation_;
   Mux mux_;
   Convoy convoy_;
   RightOfWay right_of_way_;
   Behaviour behaviour_;
   CommandInterface commands_;
+  MapCommands map_commands_;
   Notices notices_;
   Safeguards safeguards_;
+  Localiser localiser_;
   Telemetry telemetry_;
-  PoseCorrection correction_;
   GripWatch grip_{};
   std::uint64_t modes_seen_{};  ///< Behaviour::modes_begun() at the last scan.
-  Localisation reported_localisation_{Localisation::starting};
-  Time looked_ahead_{};                      ///< When the map's focus was set last.
-  Time localisation_since_{};                ///< Since then the odometry has a health that was not reported.
-  std::optional<LidarScan> waiting_scan_{};  ///< Waits for odometry as new as its stamp.
+  Time looked_ahead_{};         ///< When the map's focus was set last.
   Time started_{};
   std::optional<Time> holder_heard_{};  ///< First heartbeat of the holder since the start.
-  std::optional<Time> jump_reported_{};
-  std::optional<Time> searched_{};  ///< When a lost robot began to search its place last.
-  bool not_searched_{};             ///< It may be too far away to search; that was reported.
-  PlaceAgreement found_{};          ///< Of the results of the search so far.
-  int comparisons_{};               ///< Scans that did not fit the stored keyframes.
   RivalWatch rivals_;
   std::vector<TopicUse> topics_;             ///< Of the robot domain.
   int disobeyed_{};                          ///< Looks in a row without a reader of the velocities.

@@ -25,7 +25,6 @@ namespace adit::agent {
 namespace topics = wire::topics;
 
 constexpr Duration kPresencePeriod = 1s;
-constexpr Duration kMaxJudgement = 200ms;
 
 struct RadioEdge::Endpoints {
   wire::ComponentIo io;
@@ -54,12 +53,6 @@ struct RadioEdge::Endpoints {
   Timer presence_timer{};
   std::uint64_t malformed{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
-  /// A command whose goal is being judged: since when, and how many samples of it wait for the answer.
-  struct Judgement {
-    Time since{};
-    int samples{1};
-  };
-  std::map<std::pair<wire::ParticipantId, std::uint64_t>, Judgement> judged{};
 
   template <class T, class Handler>
   Result<void> read(const wire::Topic<T>& topic, Handler handler, const std::string& partition = {}) {
@@ -77,42 +70,6 @@ struct RadioEdge::Endpoints {
     (void)writer.write(sample);
   }
 };
-
-namespace {
-
-/// Whether the command is a goto with valid arguments.
-bool asks_for_goal(const Command& command) {
-  return command.request.verb == command::verb("goto") && !command.invalid;
-}
-
-/// Has the goal of a goto judged before the command interface handles it. A repeat that arrives meanwhile is
-/// answered then, too: each sample that is received gets an answer (rule 3). Other commands may overtake it;
-/// the command interface compares numbers.
-template <class Edge, class Commands, class Answers, class Check>
-void judge_goal(Edge& e, const Command& asked, const Commands& commands, const Answers& answer,
-                const Check& check) {
-  constexpr std::size_t kMaxJudged = 16;
-  const auto handle = [&e, commands, answer](const Command& command) {
-    commands([&](CommandInterface& interface) { answer(interface.handle(command, e.strand.now())); });
-  };
-  const std::pair key{asked.from.participant, asked.seq};
-  const Time now = e.strand.now();
-  // A judgement ends within its deadline, unless its component was restarted.
-  std::erase_if(e.judged, [now](const auto& entry) { return now - entry.second.since > kMaxJudgement; });
-  if (const auto same = e.judged.find(key); same != e.judged.end()) return (void)++same->second.samples;
-  if (!check || e.judged.size() >= kMaxJudged) return handle(asked);
-  e.judged.try_emplace(key).first->second.since = now;
-  check(place_of(asked.request), asked.request.has("--nearest"),
-        [&e, key, asked, handle](const Result<GoalReport>& report) {
-          const auto judged = e.judged.extract(key);
-          Command command = asked;
-          if (report) command.goal = *report;
-          // The command interface answers a repeat with the first answer.
-          for (int n = judged ? judged.mapped().samples : 1; n > 0; --n) handle(command);
-        });
-}
-
-}  // namespace
 
 RadioEdge::RadioEdge(std::unique_ptr<Endpoints> endpoints) : endpoints_(std::move(endpoints)) {}
 RadioEdge::~RadioEdge() = default;
@@ -200,26 +157,8 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                   }),
            e.read(
                topics::kCommand,
-               [&e, commands, answer,
-                find_route = dependencies.find_route,
-                check_goal = dependencies.check_goal](const radio::Command&c, const wire::SampleInfo&info) {
-                 const Command command = received(contract::decode(c), info.sender);
-                 if (asks_for_goal(command)) return judge_goal(e, command, commands, answer, check_goal);
-                 commands([&](CommandInterface& interface) {
-                   const auto given = interface.handle(command, e.strand.now());
-                   if (!given || !given->accepted() || command.request.verb != command::verb("plan"))
-                     return answer(given);
-                   find_route(place_of(command.request),
-                              [answer, given = *given](const Result<PlannedRoute>& route) {
-                                Answer with_route = given;
-                                with_route.reason = route ? Reason::none : route.reason();
-                                if (route)
-                                  with_route.route = *route;
-                                else
-                                  with_route.text = route.error().text;
-                                answer(with_route);
-                              });
-                 });
+               [command = dependencies.command, answer](const radio::Command&c, const wire::SampleInfo&info) {
+                 command(received(contract::decode(c), info.sender), answer);
                },
                e.robot),
            e.read(
@@ -251,8 +190,6 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
       },
       topics::kCarryPartition);
 }
-
-void RadioEdge::forget_judgements() { endpoints_->judged.clear(); }
 
 void RadioEdge::reach_carriers() {
   Endpoints& e = *endpoints_;

@@ -30,15 +30,8 @@ class RadioEdge {
     std::function<void(const std::function<void(CommandInterface&)>&)> commands;
     /// Runs a task that sends an answer, once the state that the answer reports is on disk.
     std::function<void(Task)> settle{};
-    /// Asks the robot's global planner for a route to `goal` (map frame, m) and calls `done` exactly once,
-    /// within 0.5 s.
-    std::function<void(const Eigen::Vector3d& goal, std::function<void(const Result<PlannedRoute>&)> done)>
-        find_route{};
-    /// Judges a goal (map frame, m) by the robot's map and calls `done` exactly once, within 0.1 s.
-    /// `replace`: the report may name the nearest valid place instead. Error: the goal could not be judged.
-    std::function<void(const Eigen::Vector3d& goal, bool replace,
-                       std::function<void(const Result<GoalReport>&)> done)>
-        check_goal{};
+    /// Handles a command and calls the function with the answer to this sample of it.
+    std::function<void(const Command&, const std::function<void(const std::optional<Answer>&)>&)> command{};
     /// Takes what another robot said of itself; nothing: the beacon was malformed.
     std::function<void(const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from,
                        Time received)>
@@ -75,9 +68,6 @@ class RadioEdge {
   void send(const TeamBeacon& beacon);
   /// Sends a piece of content to the stations, or to the carriers. `session`: of the sender.
   void send(const transfer::Piece& piece, std::uint32_t session);
-  /// Takes a repeat of a goal that is being judged for a new command: a judgement ends with the command
-  /// component.
-  void forget_judgements();
   /// Opens the endpoints to the robots that carry maps, unless they are open; nothing is sent to them before.
   void reach_carriers();
   /// Sends a carrier's receipts to the robots that reach for carriers.

@@ -26,12 +26,9 @@ class RadioEdgeTest : public testing::Test {
     op1.participant = station->id();
     bench.interface().hear(op1, 1, bench.now);
     EXPECT_TRUE(bench.say("op1", "take").accepted());
-    RadioEdge::Dependencies dependencies{directory,
-                                         namesakes,
+    RadioEdge::Dependencies dependencies{directory, namesakes,
                                          [this](const auto& use) { use(bench.interface()); },
-                                         [](const Task& task) { task(); },
-                                         [](const auto&, const auto&) {},
-                                         [](const auto&, bool, const auto&) {}};
+                                         [](const Task& task) { task(); }, [](const auto&, const auto&) {}};
     dependencies.refused = [this](const std::string& name, const std::string& why) {
       refused.push_back(name + ": " + why);
     };
