@@ -100,7 +100,7 @@ std::optional<Eigen::Vector3d> on_partly_seen_ground(RoutePlanner& planner, cons
     if (plans >= kPlans || distance >= least) return false;
     ++plans;
     const Route route = planner.plan(query.from, {place.x(), place.y(), std::nan("")});
-    if (!route.found() || route.doubtful || route.cost >= least) return true;
+    if (!route.found() || route.cost >= least) return true;
     if (route.unknown_length > 2 * query.radius) return true;
     least = route.cost;
     best = place;

@@ -17,7 +17,10 @@ constexpr float kReturnNoise = 0.02f;       // m
 constexpr float kFirstScale = 0.2f, kLastScale = 0.03f;  // Scales of the fit's weights, m.
 constexpr float kInliers = 0.6f;                         // Minimum inlier fraction of the plane.
 constexpr float kMaxGradient = 0.0524f;                  // 3 degrees.
-constexpr float kFade = 0.02f;                           // Per scan: fades within about 5 s at 10 Hz.
+// Shares of what the map says of attitude and height that are taken; the rest is the reported pose's. A map
+// that each scan extends by its own tilt agrees with any slope, so it must not be followed all the way:
+// attitude filters are about twice as wrong as the mean of the scans that made the map.
+constexpr float kGradientShare = 0.8f, kHeightShare = 0.9f;
 
 Pose3 corrected(const Pose3& body, const Eigen::Vector2f& gradient, float height) {
   const double size = gradient.norm();
@@ -31,8 +34,6 @@ Pose3 corrected(const Pose3& body, const Eigen::Vector2f& gradient, float height
 
 Pose3 GroundRegistration::apply(std::span<const Eigen::Vector3f> points, const Pose3& body,
                                 const SurfaceMap& map) {
-  gradient_ *= 1.0f - kFade;
-  height_ *= 1.0f - kFade;
   const Pose3 before = corrected(body, gradient_, height_);
   const Eigen::Matrix3f turn = before.orientation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f at = before.position.cast<float>();
@@ -49,12 +50,16 @@ Pose3 GroundRegistration::apply(std::span<const Eigen::Vector3f> points, const P
     const float apart = place.z() - cell->z;
     if (std::abs(apart) <= kSame) samples_.emplace_back(offset.x(), offset.y(), apart);
   }
-  if (samples_.size() < kEnoughSamples) return before;
+  if (samples_.size() < kEnoughSamples) {
+    gradient_ *= kGradientShare;
+    height_ *= kHeightShare;
+    return before;
+  }
   const PlanePrior prior{0.0f, {0, 0}, kSame / 2, kMaxGradient / 3};
   const PlaneFit fit = fit_plane(samples_, prior, prior.gradient, kReturnNoise, kFirstScale, kLastScale);
   if (fit.inliers < kInliers) return before;
-  gradient_ += fit.gradient;
-  height_ = std::clamp(height_ + fit.height, -kSame, kSame);
+  gradient_ = kGradientShare * (gradient_ + fit.gradient);
+  height_ = std::clamp(kHeightShare * (height_ + fit.height), -kSame, kSame);
   if (const float size = gradient_.norm(); size > kMaxGradient) gradient_ *= kMaxGradient / size;
   return corrected(body, gradient_, height_);
 }

@@ -37,8 +37,6 @@ struct Route {
   std::vector<Eigen::Vector3d> points{};  ///< Corners from the start to the goal; empty unless found.
   /// One per leg (points - 1): whether the leg leads through unknown space.
   std::vector<std::uint8_t> unknown{};
-  /// Leads over possible steps that were only seen from afar and must be inspected first.
-  bool doubtful{false};
   double length{0};          ///< m
   double unknown_length{0};  ///< Length of its part through unknown space, m.
   double cost{0};            ///< Length with the penalties of narrow and unknown places, m.

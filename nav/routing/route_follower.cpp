@@ -199,9 +199,8 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const Eigen::Vector3d& plac
   bool usable = route_.found(), longer = false;
   if (usable) advance(planner, place);
   watch_blocked(planner, place, blocked, stamp_s);
-  // The plain map does not permit a doubtful route, so it stays valid until the next search.
-  const bool lost = usable && !route_.doubtful && !planner.measure(route_);
-  usable = usable && !lost && !route_.doubtful;
+  const bool lost = usable && !planner.measure(route_);
+  usable = usable && !lost;
   if (lost || !looked_ || stamp_s - *looked_ >= params_.look) {
     looked_ = stamp_s;
     Route other = planner.plan(place, goal);

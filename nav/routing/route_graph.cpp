@@ -13,10 +13,10 @@ constexpr double kOwnGoal = 0.1;
 
 }  // namespace
 
-RouteGraph::RouteGraph(SurfaceMap& map, const Platform& platform, const RouteParams& params, bool doubting)
+RouteGraph::RouteGraph(SurfaceMap& map, const Platform& platform, const RouteParams& params)
     : params_(params),
       map_(map),
-      builder_(platform, params, doubting),
+      builder_(platform, params),
       line_(map, builder_),
       search_(map, builder_, params) {}
 

@@ -9,11 +9,10 @@
 
 namespace adit::nav {
 
-/// Route queries over the graph of a map. `doubting`: possible steps that were seen from too far do not
-/// block; use a copy of the map then, because tiles store their costs.
+/// Route queries over the graph of a map.
 class RouteGraph {
  public:
-  RouteGraph(SurfaceMap& map, const Platform& platform, const RouteParams& params, bool doubting = false);
+  RouteGraph(SurfaceMap& map, const Platform& platform, const RouteParams& params);
   RouteGraph(const RouteGraph&) = delete;
   RouteGraph& operator=(const RouteGraph&) = delete;
 

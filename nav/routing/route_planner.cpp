@@ -56,35 +56,15 @@ bool RoutePlanner::has_blocked_places() const {
 }
 
 std::size_t RoutePlanner::memory() const {
-  const auto of = [](const SurfaceMap& map, const RouteGraph& graph) {
-    return static_cast<std::size_t>(map.size()) * (sizeof(Tile) + 96) + graph.search().memory();
-  };
-  return of(map_, graph_) + (doubts_ ? of(doubts_->map, doubts_->graph) : 0);
-}
-
-RouteGraph& RoutePlanner::doubtful_graph() {
-  if (!doubts_) doubts_ = std::make_unique<Doubts>(platform_, params_);
-  doubts_->map.copy(map_);
-  return doubts_->graph;
+  return static_cast<std::size_t>(map_.size()) * (sizeof(Tile) + 96) + graph_.search().memory();
 }
 
 std::vector<float> RoutePlanner::costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) {
-  std::vector<float> costs = graph_.costs(from, goals);
-  const auto missing = [](float cost) { return !std::isfinite(cost); };
-  if (std::none_of(costs.begin(), costs.end(), missing)) return costs;
-  const std::vector<float> doubtful = doubtful_graph().costs(from, goals);
-  for (std::size_t i = 0; i < costs.size(); ++i) costs[i] = std::min(costs[i], doubtful[i]);
-  return costs;
+  return graph_.costs(from, goals);
 }
 
 Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  Route route = graph_.plan(from, to);
-  if (route.found()) doubts_.reset();
-  if (route.status != RouteStatus::unreachable) return route;
-  // What was seen from afar proves nothing.
-  Route doubtful = doubtful_graph().plan(from, to);
-  doubtful.doubtful = true;
-  return doubtful.found() ? doubtful : route;
+  return graph_.plan(from, to);
 }
 
 }  // namespace adit::nav

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,12 +35,12 @@ class RoutePlanner {
   void finish();
 
   /// Plans a route between two places. z NaN in the goal: the floor nearest to the start's, or any floor if
-  /// none is known there. A route never crosses a known obstacle. If there is no other route, steps up to
-  /// 0.36 m that were only seen from afar are ignored; the result is then marked as doubtful.
+  /// none is known there. A route never crosses a known obstacle. Steps up to 0.36 m that were only seen from
+  /// afar cost RouteParams::doubtful_cost.
   Route plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   /// Costs of the routes from one place to many through known space, m; infinite where there is none. One
   /// search serves all goals. The costs are those along the graph before straightening, so plan()'s are lower
-  /// by some per cent. `goals`: as for plan(). A goal without any other route has the cost of a doubtful one.
+  /// by some per cent. `goals`: as for plan().
   std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals);
   /// Sets the other robots of the team, which cost a route that leads through them.
   void set_team(std::vector<TeamPlace> team) { map_.set_team(std::move(team)); }
@@ -73,21 +72,9 @@ class RoutePlanner {
   void clear() {
     map_.clear();
     registration_.clear();
-    doubts_.reset();
   }
 
  private:
-  /// A copy of the map in which doubtful steps do not block.
-  struct Doubts {
-    SurfaceMap map;
-    RouteGraph graph;
-    Doubts(const Platform& platform, const RouteParams& params)
-        : map(params, ScanProfile::most_wrong(platform)), graph(map, platform, params, true) {}
-  };
-
-  /// The graph without doubtful steps, of the present map.
-  RouteGraph& doubtful_graph();
-
   Platform platform_;
   RouteParams params_;
   double passage_width_;  // m: the robot must cross narrower passages straight.
@@ -95,7 +82,6 @@ class RoutePlanner {
   ScanProfile profile_;
   GroundRegistration registration_{};
   RouteGraph graph_;
-  std::unique_ptr<Doubts> doubts_{};  ///< Created when a goal seems unreachable.
 };
 
 }  // namespace adit::nav

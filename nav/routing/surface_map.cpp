@@ -46,25 +46,6 @@ void SurfaceMap::clear() {
   last_ = -1;
 }
 
-void SurfaceMap::copy(const SurfaceMap& other) {
-  tiles_.resize(other.tiles_.size());
-  for (std::size_t i = 0; i < tiles_.size(); ++i) {
-    if (!tiles_[i]) tiles_[i] = std::make_unique<Tile>();
-    *tiles_[i] = *other.tiles_[i];
-    tiles_[i]->dirty = tiles_[i]->used;
-    tiles_[i]->built = false;
-  }
-  free_ = other.free_;
-  heads_ = other.heads_;
-  queue_.clear();
-  places_ = other.places_;
-  team_ = other.team_;
-  areas_ = other.areas_;
-  extent_ = other.extent_;
-  used_ = other.used_;
-  last_ = -1;
-}
-
 void SurfaceMap::set_areas(const AreaSet& areas) {
   if (areas_.same(areas)) return;
   areas_ = areas;
@@ -249,7 +230,7 @@ void SurfaceMap::mark_dirty(int index) {
 }
 
 // An obstacle also reduces the clearance in the neighbouring tiles.
-void SurfaceMap::mark_around(const Tile& t, int ix, int iy) {
+void SurfaceMap::mark_around(const Tile& t, int ix, int iy, bool doubtful_only) {
   const int lx = ix & 15, ly = iy & 15;
   const int dx = lx < kTileHalo ? -1 : lx >= kTileSide - kTileHalo ? 1 : 0;
   const int dy = ly < kTileHalo ? -1 : ly >= kTileSide - kTileHalo ? 1 : 0;
@@ -257,43 +238,65 @@ void SurfaceMap::mark_around(const Tile& t, int ix, int iy) {
     const bool near_x = kAroundX[k] == 0 || kAroundX[k] == dx, near_y = kAroundY[k] == 0 || kAroundY[k] == dy;
     if (!near_x || !near_y) continue;
     for (int i = t.beside[k]; i >= 0; i = tile(i).next)
-      if (std::abs(tile(i).z - t.z) <= 2 * kFloorSeparation) mark_dirty(i);
+      if ((!doubtful_only || tile(i).has_doubts) && std::abs(tile(i).z - t.z) <= 2 * kFloorSeparation)
+        mark_dirty(i);
   }
+}
+
+double SurfaceMap::range_of(int ix, int iy) const {
+  return std::hypot((ix + 0.5) * kRouteCell - x_, (iy + 0.5) * kRouteCell - y_);
 }
 
 bool SurfaceMap::is_near(int ix, int iy) const {
   constexpr double kNear = 4.0;  // m: from farther away the side of a ramp and a step look alike.
-  const double dx = (ix + 0.5) * kRouteCell - x_, dy = (iy + 0.5) * kRouteCell - y_;
-  return dx * dx + dy * dy < kNear * kNear;
+  return range_of(ix, iy) < kNear;
+}
+
+// The error of a height is that of the attitude times the range: a Kalman filter with the range in place of
+// the standard deviation. The range of the estimate has a lower limit, so that the height follows the
+// odometry's.
+bool SurfaceMap::update_height(GroundCell& cell, float z, float range, bool measured) {
+  constexpr float kLeast = 1.0f;  // m
+  constexpr float kSure = 4.0f;   // m: half a degree moves the ground by 3.5 cm, less than half a step.
+  const float before = static_cast<float>(cell.range) * kRangeUnit;
+  range = std::max(range, kLeast);
+  if (measured && !cell.measured) {
+    if (cell.sure && range > kSure) return false;
+    cell.z = z;
+    cell.range = 255;
+  } else if (measured == cell.measured) {
+    cell.z += before * before / (before * before + range * range) * (z - cell.z);
+    range = std::max(kLeast, before * range / std::hypot(before, range));
+  } else {
+    return false;  // An interpolated height does not change a measured one: from afar stairs look like a
+                   // ramp.
+  }
+  cell.measured = measured;
+  cell.range = static_cast<std::uint8_t>(std::min(255.0f, std::ceil(range / kRangeUnit)));
+  const bool was_sure = cell.sure;
+  cell.sure = range <= kSure;
+  return cell.sure && !was_sure;
 }
 
 void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   const bool certain = seen == Seen::stood_on, measured = seen != Seen::between;
-  const bool sure = seen >= Seen::given || is_near(ix, iy);
+  const float range = seen >= Seen::given ? 0.0f : static_cast<float>(range_of(ix, iy));
   const int index = surface_layer(ix, iy, z);
   Tile& t = tile(index);
   GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
   if (!cell.known) {
-    cell = {z, 0, 0, true, measured, false, sure};
+    cell = {.z = z, .known = true, .measured = measured};
+    (void)update_height(cell, z, range, measured);
     mark_dirty(index);
     // A step between two cells is known with the second one; TileBuilder searches it over four cells.
     if (const int x = ix & 15, y = iy & 15; x < 4 || y < 4 || x > 11 || y > 11) mark_around(t, ix, iy);
     return;
   }
   const float before = cell.z;
-  // From afar stairs look like a ramp: interpolated heights do not change measured ones, and heights seen
-  // from afar do not change those seen from near.
-  const bool counts = sure || !cell.sure;
-  if (counts && measured && !cell.measured) {
-    cell.z = z;
-  } else if (counts && measured == cell.measured) {
-    cell.z += 0.25f * (z - cell.z);
+  if (update_height(cell, z, range, measured)) {
+    if (t.has_doubts) mark_dirty(index);
+    mark_around(t, ix, iy, true);
   }
-  if (sure && !cell.sure && (measured || !cell.measured)) {
-    cell.z = z;
-    cell.sure = true;
-  }
-  cell.measured |= measured && counts;
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
   if (std::abs(cell.z - before) > 0.05f) mark_around(t, ix, iy);  // A step may have appeared or disappeared.
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
@@ -302,7 +305,10 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   cell.evidence = static_cast<std::int8_t>(cell.evidence - kRay);
   if (!cell.blocked || cell.evidence > kFree) return;
   cell.blocked = false;
-  cell.sure = sure;  // Its height was measured before the obstacle appeared.
+  // Its height was measured before the obstacle appeared.
+  cell.range = 255;
+  cell.sure = cell.measured = false;
+  (void)update_height(cell, z, range, measured);
   cell.obstacle_height = 0;
   mark_dirty(index);
   mark_around(t, ix, iy);
@@ -327,7 +333,7 @@ void SurfaceMap::see_obstacle(float x, float y, float z, float obstacle_height, 
   Tile& t = tile(index);
   GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
   if (!cell.known) {
-    cell = {z, 0, 0, true, false, false};
+    cell = {.z = z, .known = true};
     mark_dirty(index);
   }
   cell.sure = cell.sure || sure || is_near(ix, iy);

@@ -91,8 +91,6 @@ class SurfaceMap {
   const Extent& extent() const { return extent_; }
   /// Forgets everything.
   void clear();
-  /// Copies the ground of another map; all of its graph must be rebuilt.
-  void copy(const SurfaceMap& other);
 
  private:
   static std::uint64_t key(int tx, int ty) {
@@ -103,9 +101,14 @@ class SurfaceMap {
   int create(int tx, int ty, float z);
   void link(int index);
   void evict();
+  /// Horizontal distance of a cell from the robot, m.
+  double range_of(int ix, int iy) const;
   bool is_near(int ix, int iy) const;
+  /// Updates the height of a cell by one that was measured from `range`, m. Returns whether it became sure.
+  static bool update_height(GroundCell& cell, float z, float range, bool measured);
   void mark_dirty(int index);
-  void mark_around(const Tile& tile, int ix, int iy);
+  /// Marks the tiles that a cell is near to. `doubtful_only`: those with doubts alone.
+  void mark_around(const Tile& tile, int ix, int iy, bool doubtful_only = false);
   void mark_place(const BlockedPlace& place);
 
   RouteParams params_;

@@ -26,12 +26,15 @@ struct GroundCell {
   bool known : 1 {false};
   bool measured : 1 {false};  ///< The height was measured; else interpolated between returns.
   bool blocked : 1 {false};
-  bool sure : 1 {false};  ///< The height was seen from near.
+  bool sure : 1 {false};  ///< The height is exact enough to prove a step.
+  /// How exactly the height was measured: as by one scan from so far away, kRangeUnit.
+  std::uint8_t range{255};
   /// Position of the obstacle relative to the cell's centre, kAsideUnit.
   std::int8_t aside_x{0}, aside_y{0};
   std::uint16_t scan{0};  ///< The last scan with a return from the obstacle.
 };
 inline constexpr float kObstacleHeightUnit = 0.02f;                        ///< m
+inline constexpr float kRangeUnit = 0.1f;                                  ///< m
 inline constexpr float kAsideUnit = static_cast<float>(kRouteCell) / 250;  ///< m
 
 /// The sides of a tile: +x, +y, -x, -y.
@@ -67,7 +70,8 @@ struct Tile {
   int next{-1};  ///< The tile of another floor at this place.
   std::array<int, 8> beside{-1, -1, -1, -1, -1, -1, -1, -1};  ///< First tiles of the neighbouring places.
   bool used{false}, dirty{false};
-  bool built{false};  ///< Costs and nodes are computed.
+  bool built{false};       ///< Costs and nodes are computed.
+  bool has_doubts{false};  ///< Heights that are not sure raised some of the costs.
   std::array<GroundCell, kTileArea> cells{};
   std::array<std::uint8_t, kTileArea> cost{};  ///< Of each cell, 1/16 per length; 0: impassable.
   int node_count{0};

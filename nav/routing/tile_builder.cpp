@@ -24,11 +24,10 @@ constexpr double kNoise = 0.05;  // m: of the difference of two heights; also a 
 
 // The required clearance is less than the body needs, because the nearest cell's centre lies beside the
 // middle of a gap. The local planner is exact and reports when the robot does not fit.
-TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, bool doubting)
-    : TileBuilder(platform, params, Traversability::of(platform), doubting) {}
+TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
+    : TileBuilder(platform, params, Traversability::of(platform)) {}
 
-TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, const Traversability& limits,
-                         bool doubting)
+TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, const Traversability& limits)
     : hard_(std::max(platform.width / 2 - kAsideOfGap, kRouteCell)),
       comfort_(
           std::min(std::hypot(platform.length, platform.width) / 2 + params.comfort, kTileHalo * kRouteCell)),
@@ -40,8 +39,9 @@ TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, co
       step_(limits.obstacle),
       slope_(limits.slope),
       climbs_stairs_(platform.stairs),
-      doubting_(doubting),
-      through_unknown_(params.through_unknown) {
+      through_unknown_(params.through_unknown),
+      doubtful_cost_(static_cast<std::uint8_t>(
+          std::lround(std::clamp(double{kUnit} * params.doubtful_cost, 1.0, 255.0)))) {
   for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2)
     cost_of_[d2] = cost_at(std::sqrt(static_cast<double>(d2)) * kRouteCell);
 }
@@ -62,18 +62,27 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       const GroundCell& cell = from.cells[static_cast<std::size_t>((y - oy) * kTileSide + (x - ox))];
       if (!cell.known || std::abs(cell.z - z) > 2 * kFloorSeparation) continue;
       // The height of the ground under an obstacle is a guess and makes no step.
-      known_[in_window(x, y)] = true;
-      height_[in_window(x, y)] = cell.blocked || !said(cell) ? kNan : cell.z;
-      sure_[in_window(x, y)] = certain(cell);
-      solid_[in_window(x, y)] = has_obstacle_[in_window(x, y)] = solid(cell);
-      if (solid(cell)) aside_[in_window(x, y)] = {cell.aside_x, cell.aside_y};
+      const std::size_t at = in_window(x, y);
+      known_[at] = true;
+      seen_height_[at] = cell.blocked ? kNan : cell.z;
+      height_[at] = said(cell) ? seen_height_[at] : kNan;
+      sure_[at] = cell.sure;
+      all_sure_ = all_sure_ && cell.sure;
+      solid_[at] = solid(cell);
+      has_obstacle_[at] = cell.blocked;
+      doubtful_[at] = cell.blocked && !solid_[at];
+      if (solid_[at]) aside_[at] = {cell.aside_x, cell.aside_y};
     }
 }
 
 void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   height_.fill(kNan);
+  seen_height_.fill(kNan);
   known_.fill(false);
+  sure_.fill(false);
+  all_sure_ = true;
   solid_.fill(false);
+  doubtful_.fill(false);
   has_obstacle_.fill(false);
   aside_.fill({0, 0});
   gather_tile(tile, tile.z, kTileHalo, kTileHalo);
@@ -87,8 +96,12 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
       const GroundCell& cell = other.cells[k];
       const float off = std::abs(cell.z - tile.z);
       if (tile.cells[k].known || !cell.known || off > kFloorSeparation) continue;
-      const bool edge = said(cell) && (certain(cell) || off >= doubtful_rise_);
-      if (edge || solid(cell)) solid_[in_window(c % kTileSide + kTileHalo, c / kTileSide + kTileHalo)] = true;
+      const std::size_t at = in_window(c % kTileSide + kTileHalo, c / kTileSide + kTileHalo);
+      const bool edge = said(cell) && (cell.sure || off >= doubtful_rise_);
+      if (edge || solid(cell))
+        solid_[at] = true;
+      else
+        doubtful_[at] = true;
     }
   }
   for (int dy = -1; dy <= 1; ++dy)
@@ -140,21 +153,24 @@ bool TileBuilder::is_foot(std::size_t cell) const {
 void TileBuilder::find_steps() {
   float lowest = std::numeric_limits<float>::max(), highest = std::numeric_limits<float>::lowest();
   const auto compare = [this](std::size_t a, std::size_t b) {
+    const float seen = std::abs(seen_height_[a] - seen_height_[b]);
+    if (!(seen > rise_) || is_foot(seen_height_[a] > seen_height_[b] ? a : b)) return;  // Returns for NaN.
     const float most = sure_[a] && sure_[b] ? rise_ : doubtful_rise_;
-    if (std::abs(height_[a] - height_[b]) > most &&
-        !is_foot(height_[a] > height_[b] ? a : b))  // False for NaN.
+    if (std::abs(height_[a] - height_[b]) > most)
       solid_[a] = solid_[b] = true;
+    else
+      doubtful_[a] = doubtful_[b] = true;
   };
   for (int y = 0; y < kWindow; ++y)
     for (int x = 0; x < kWindow; ++x) {
       if (x + 1 < kWindow) compare(in_window(x, y), in_window(x + 1, y));
       if (y + 1 < kWindow) compare(in_window(x, y), in_window(x, y + 1));
-      const float height = height_[in_window(x, y)];
+      const float height = seen_height_[in_window(x, y)];
       if (height < lowest) lowest = height;  // False for NaN.
       if (height > highest) highest = height;
     }
   if (climbs_stairs_ || highest - lowest <= rise_) return;
-  for (int cells = 2; cells < (doubting_ ? kLongSteep : kSteep); ++cells)
+  for (int cells = 2; cells < (all_sure_ ? kSteep : kLongSteep); ++cells)
     for (int i = 0; i < kWindow; ++i)
       for (int j = 0; j + cells < kWindow; ++j) {
         find_steep(in_window(j, i), 1, cells);
@@ -167,6 +183,8 @@ void TileBuilder::find_steps() {
 // is left to that one.
 void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
   const std::size_t to = from + stride * static_cast<std::size_t>(cells);
+  if (cells < kSteep && seems_steep(from, stride, cells))
+    for (std::size_t i = from + stride; i < to; i += stride) doubtful_[i] = true;
   const float rise = std::abs(height_[from] - height_[to]);
   if (!(rise > rise_)) return;
   bool sure = cells < kSteep;
@@ -180,6 +198,15 @@ void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
   if (rise <= most || is_foot(height_[from] > height_[to] ? from : to)) return;
   for (std::size_t i = from + stride; i < to; i += stride)
     solid_[i] = cells < kSteep || known_[i];  // The ground below a stage is unknown.
+}
+
+bool TileBuilder::seems_steep(std::size_t from, std::size_t stride, int cells) const {
+  const std::size_t to = from + stride * static_cast<std::size_t>(cells);
+  const double rise = std::abs(seen_height_[from] - seen_height_[to]);
+  if (!(rise > std::max(step_, slope_ * kRouteCell * cells + kSureNoise))) return false;
+  for (std::size_t i = from; i <= to; i += stride)
+    if (solid_[i] || doubtful_[i]) return false;
+  return !is_foot(seen_height_[from] > seen_height_[to] ? from : to);
 }
 
 // Distance from the centre of a cell of the window to the nearest obstacle, with its position in its cell, m.
@@ -228,6 +255,25 @@ void TileBuilder::measure(Tile& tile) {
                        : cost_of_[static_cast<std::size_t>(least)];
       if (!tile.cells[c].known) cost = through_unknown_ ? std::min(255.0f, cost * unknown_cost_) : 0.0f;
       tile.cost[c] = static_cast<std::uint8_t>(cost);
+    }
+  tile.has_doubts = false;
+  if (!all_sure_) price_doubts(tile);
+}
+
+void TileBuilder::price_doubts(Tile& tile) const {
+  const int reach = static_cast<int>(hard_ / kRouteCell);
+  for (int y = kTileHalo - reach; y < kTileHalo + kTileSide + reach; ++y)
+    for (int x = kTileHalo - reach; x < kTileHalo + kTileSide + reach; ++x) {
+      if (!doubtful_[in_window(x, y)]) continue;
+      tile.has_doubts = true;
+      for (int dy = -reach; dy <= reach; ++dy)
+        for (int dx = -reach; dx <= reach; ++dx) {
+          const int u = x + dx - kTileHalo, v = y + dy - kTileHalo;
+          if (u < 0 || v < 0 || u >= kTileSide || v >= kTileSide || dx * dx + dy * dy > reach * reach)
+            continue;
+          std::uint8_t& cost = tile.cost[static_cast<std::size_t>(v * kTileSide + u)];
+          if (cost > 0) cost = std::max(cost, doubtful_cost_);
+        }
     }
 }
 

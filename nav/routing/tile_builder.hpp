@@ -12,19 +12,21 @@ namespace adit::nav {
 /// Builds a tile's part of the graph: the cost of each cell, the openings in its sides, and the distances
 /// between them within the tile (Botea, Müller, Schaeffer: *Near optimal hierarchical path-finding*, 2004).
 /// Unlike there, each tile has its own openings, so a single tile can be rebuilt.
+///
+/// From afar the error of the attitude makes steps where there are none: steps and low obstacles that were
+/// only seen from there do not block, but cost RouteParams::doubtful_cost, until they are seen from near.
 class TileBuilder {
  public:
-  /// `doubting`: see RouteGraph.
-  TileBuilder(const Platform& platform, const RouteParams& params, bool doubting = false);
+  TileBuilder(const Platform& platform, const RouteParams& params);
 
-  /// Whether a cell holds an obstacle.
-  bool solid(const GroundCell& cell) const {
-    return cell.blocked && (certain(cell) || cell.obstacle_height > kTall);
+  /// Whether a cell holds an obstacle for certain.
+  static bool solid(const GroundCell& cell) {
+    return cell.blocked && (cell.sure || cell.obstacle_height > kTall);
   }
   /// Maximum height difference between two neighbouring cells, m: a larger one is a step.
   float most_rise(const GroundCell& a, const GroundCell& b) const {
     if (!said(a) || !said(b)) return kFloorSeparation;
-    return certain(a) && certain(b) ? rise_ : doubtful_rise_;
+    return a.sure && b.sure ? rise_ : doubtful_rise_;
   }
 
   /// Computes the cells' costs and the openings from the map. The distances between openings are computed on
@@ -49,13 +51,11 @@ class TileBuilder {
   float unknown_cost() const { return unknown_cost_; }
 
  private:
-  TileBuilder(const Platform& platform, const RouteParams& params, const Traversability& limits,
-              bool doubting);
+  TileBuilder(const Platform& platform, const RouteParams& params, const Traversability& limits);
   /// In kObstacleHeightUnit: higher obstacles are walls or edges, also when seen from afar.
   static constexpr std::uint8_t kTall = 18;
-  bool certain(const GroundCell& cell) const { return !doubting_ || cell.sure; }
-  /// Whether a height is usable: interpolated heights seen from afar are not.
-  bool said(const GroundCell& cell) const { return cell.known && (certain(cell) || cell.measured); }
+  /// Whether a height proves anything: interpolated heights seen from afar do not.
+  static bool said(const GroundCell& cell) { return cell.known && (cell.sure || cell.measured); }
   static constexpr int kWindow = kTileSide + 2 * kTileHalo;
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
   void gather(const SurfaceMap& map, const Tile& tile);
@@ -64,7 +64,11 @@ class TileBuilder {
   bool is_foot(std::size_t cell) const;
   void find_steps();
   void find_steep(std::size_t from, std::size_t stride, int cells);
+  /// Whether the ground between two cells is too steep if their heights are right.
+  bool seems_steep(std::size_t from, std::size_t stride, int cells) const;
   void measure(Tile& tile);
+  /// Raises the costs of the cells that are near to what is only doubtful.
+  void price_doubts(Tile& tile) const;
   std::uint8_t cost_at(double distance) const;
   double exact_clearance(int x, int y) const;
   void open_sides(Tile& tile);
@@ -76,10 +80,13 @@ class TileBuilder {
   double hard_, comfort_, narrow_cost_;  // Required and preferred clearance, m.
   float rise_, doubtful_rise_, unknown_cost_;
   double step_, slope_;
-  bool climbs_stairs_, doubting_, through_unknown_;
+  bool climbs_stairs_, through_unknown_;
+  std::uint8_t doubtful_cost_;
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // By squared clearance in cells.
-  std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown.
-  std::array<bool, kWindow * kWindow> known_{}, sure_{}, has_obstacle_{}, solid_{};
+  // NaN: unknown. `seen_height_` has those, too, that prove nothing.
+  std::array<float, kWindow * kWindow> height_{}, seen_height_{};
+  std::array<bool, kWindow * kWindow> known_{}, sure_{}, has_obstacle_{}, solid_{}, doubtful_{};
+  bool all_sure_{true};                                                // All known cells of the window are.
   std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // Position of obstacles, kAsideUnit.
   std::array<float, kTileArea> distance_{};
   std::array<int, kTileArea> before_{};
