@@ -135,7 +135,10 @@ Result<void> Agent::CommandComponent::on_start() {
   for (Component* part : parts()) {
     part->on_failure([this](const ComponentFailure& f) { fail(f.component + ": " + f.text); });
     part->set_generation(generation());
-    if (const auto started = part->start(); !started) return started;
+    if (const auto started = part->start(); !started) {
+      for (Component* each : parts()) each->stop();
+      return started;
+    }
   }
   offer(context_.scans, [this](LidarScan lidar, const Reply<void>& reply) {
     localiser_.scan(std::move(lidar));
@@ -298,8 +301,8 @@ void Agent::CommandComponent::send_beacon(Time at) {
 Facts Agent::CommandComponent::sense(Time now) const {
   Facts f{};
   f.driver_alive = frames_.alive(now);
-  f.unlocalised = localiser_.unknown_because(now);
-  f.localised = frames_.initialised() && f.unlocalised == Reason::none;
+  if (const Reason why = localiser_.unknown_because(now); why != Reason::none) f.unlocalised = why;
+  f.localised = frames_.initialised() && localiser_.known(now);
   if (f.localised && navigation_.is_far_out()) {
     f.localised = false;
     f.unlocalised = Reason::outside_area;

@@ -9,8 +9,6 @@ namespace adit::nav {
 namespace {
 
 constexpr double kMapError = kRouteCell / 2;  // m
-/// Obstacle height that ScanProfile writes at the edge of missing ground, kObstacleHeightUnit.
-constexpr std::uint8_t kHoleHeight = 1;
 
 }  // namespace
 

@@ -19,7 +19,8 @@ constexpr float kInliers = 0.6f;                         // Minimum inlier fract
 constexpr float kMaxGradient = 0.0524f;                  // 3 degrees.
 // Shares of what the map says of attitude and height that are taken; the rest is the reported pose's. A map
 // that each scan extends by its own tilt agrees with any slope, so it must not be followed all the way:
-// attitude filters are about twice as wrong as the mean of the scans that made the map.
+// attitude filters are about twice as wrong as the mean of the scans that made the map. Heights of the
+// odometry drift slowly, so that most of a difference to the map is the odometry's.
 constexpr float kGradientShare = 0.8f, kHeightShare = 0.9f;
 
 Pose3 corrected(const Pose3& body, const Eigen::Vector2f& gradient, float height) {
@@ -50,14 +51,16 @@ Pose3 GroundRegistration::apply(std::span<const Eigen::Vector3f> points, const P
     const float apart = place.z() - cell->z;
     if (std::abs(apart) <= kSame) samples_.emplace_back(offset.x(), offset.y(), apart);
   }
-  if (samples_.size() < kEnoughSamples) {
+  // Without a fit the correction fades: it may itself be why there is none.
+  const auto fade = [&] {
     gradient_ *= kGradientShare;
     height_ *= kHeightShare;
     return before;
-  }
+  };
+  if (samples_.size() < kEnoughSamples) return fade();
   const PlanePrior prior{0.0f, {0, 0}, kSame / 2, kMaxGradient / 3};
   const PlaneFit fit = fit_plane(samples_, prior, prior.gradient, kReturnNoise, kFirstScale, kLastScale);
-  if (fit.inliers < kInliers) return before;
+  if (fit.inliers < kInliers) return fade();
   gradient_ = kGradientShare * (gradient_ + fit.gradient);
   height_ = std::clamp(kHeightShare * (height_ + fit.height), -kSame, kSame);
   if (const float size = gradient_.norm(); size > kMaxGradient) gradient_ *= kMaxGradient / size;

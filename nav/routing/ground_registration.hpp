@@ -12,8 +12,8 @@ namespace adit::nav {
 /// Registers the height, roll and pitch of scans against the ground of a SurfaceMap.
 ///
 /// An attitude error of 1 degree moves ground 10 m away by 0.17 m, which would be a step beside ground that
-/// another scan measured. The correction fades towards the reported pose, so an error of the first scan does
-/// not tilt the map for ever, and the map's heights follow those of the odometry.
+/// another scan measured. A share of each correction is left to the reported pose, so an error of the
+/// first scan does not tilt the map for ever, and the map's heights follow those of the odometry.
 class GroundRegistration {
  public:
   /// Returns the pose `body` with height, roll and pitch corrected. `points`: base_link, m; `body`: map

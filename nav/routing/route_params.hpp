@@ -12,6 +12,8 @@ struct RouteParams {
   double level_cost{8.0};    ///< Cost of 1.5 m of height through unknown space, m, [0, 100].
   /// Cost of a metre over what looks like a step from afar only, m, [1, 15].
   double doubtful_cost{2.0};
+  /// The same for what looks like the edge of a hole, whose depth is unknown, m, [1, 15].
+  double doubtful_hole_cost{12.0};
   double snap{0.5};            ///< Start and goal move to a passable place within this distance, m, [0, 1.5].
   bool through_unknown{true};  ///< Routes may cross unknown space; false: the map is complete.
   double margin{13.0};         ///< Usable unknown space around the known space, m, [2, 100].

@@ -2,7 +2,6 @@
 #include "nav/routing/route_planner.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace adit::nav {
 namespace {

@@ -12,6 +12,9 @@ constexpr int kRay = 2;           // Evidence of a scan that saw through.
 constexpr int kMaxEvidence = 12;  // Upper limit: half as many scans free the cell again.
 constexpr int kFree = 0;
 constexpr int kMinEvidence = -4;
+// m: from farther away the side of a ramp and a step look alike, and half a degree moves the ground by 3.5
+// cm, less than half a step.
+constexpr float kSureRange = 4.0f;
 constexpr std::size_t kPlaces = 32;
 constexpr double kSamePlace = 0.6;  // m
 constexpr int kMaxTimes = 4;
@@ -241,41 +244,43 @@ void SurfaceMap::mark_around(const Tile& t, int ix, int iy, bool doubtful_only) 
       if ((!doubtful_only || tile(i).has_doubts) && std::abs(tile(i).z - t.z) <= 2 * kFloorSeparation)
         mark_dirty(i);
   }
+  // Ground of another floor is an edge of this one.
+  for (int i = first(t.tx, t.ty); i >= 0; i = tile(i).next)
+    if (&tile(i) != &t && tile(i).has_doubts) mark_dirty(i);
 }
 
 double SurfaceMap::range_of(int ix, int iy) const {
   return std::hypot((ix + 0.5) * kRouteCell - x_, (iy + 0.5) * kRouteCell - y_);
 }
 
-bool SurfaceMap::is_near(int ix, int iy) const {
-  constexpr double kNear = 4.0;  // m: from farther away the side of a ramp and a step look alike.
-  return range_of(ix, iy) < kNear;
-}
+bool SurfaceMap::is_near(int ix, int iy) const { return range_of(ix, iy) < double{kSureRange}; }
 
 // The error of a height is that of the attitude times the range: a Kalman filter with the range in place of
 // the standard deviation. The range of the estimate has a lower limit, so that the height follows the
-// odometry's.
+// odometry's. Scans from one place share their errors, so only a scan from near makes a height sure.
 bool SurfaceMap::update_height(GroundCell& cell, float z, float range, bool measured) {
-  constexpr float kLeast = 1.0f;  // m
-  constexpr float kSure = 4.0f;   // m: half a degree moves the ground by 3.5 cm, less than half a step.
+  constexpr float kMinRange = 1.0f;  // m
+  const bool was_measured = cell.measured, was_sure = cell.sure;
   const float before = static_cast<float>(cell.range) * kRangeUnit;
-  range = std::max(range, kLeast);
-  if (measured && !cell.measured) {
-    if (cell.sure && range > kSure) return false;
+  float combined = std::max(range, kMinRange);
+  if (!cell.known) {
     cell.z = z;
-    cell.range = 255;
+  } else if (measured && !cell.measured) {
+    // One measurement from afar is no better than the mean of many heights that were interpolated.
+    if (before <= kSureRange && range > kSureRange) return false;
+    cell.z = z;
   } else if (measured == cell.measured) {
-    cell.z += before * before / (before * before + range * range) * (z - cell.z);
-    range = std::max(kLeast, before * range / std::hypot(before, range));
+    cell.z += before * before / (before * before + combined * combined) * (z - cell.z);
+    combined = std::max(kMinRange, before * combined / std::hypot(before, combined));
   } else {
-    return false;  // An interpolated height does not change a measured one: from afar stairs look like a
-                   // ramp.
+    // An interpolated height does not change a measured one: from afar stairs look like a ramp.
+    return false;
   }
+  cell.known = true;
   cell.measured = measured;
-  cell.range = static_cast<std::uint8_t>(std::min(255.0f, std::ceil(range / kRangeUnit)));
-  const bool was_sure = cell.sure;
-  cell.sure = range <= kSure;
-  return cell.sure && !was_sure;
+  cell.range = static_cast<std::uint8_t>(std::min(255.0f, std::ceil(combined / kRangeUnit)));
+  cell.sure = cell.sure || range <= kSureRange;
+  return cell.sure != was_sure || cell.measured != was_measured;
 }
 
 void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
@@ -285,11 +290,13 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   Tile& t = tile(index);
   GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
   if (!cell.known) {
-    cell = {.z = z, .known = true, .measured = measured};
+    cell = {};
     (void)update_height(cell, z, range, measured);
     mark_dirty(index);
-    // A step between two cells is known with the second one; TileBuilder searches it over four cells.
-    if (const int x = ix & 15, y = iy & 15; x < 4 || y < 4 || x > 11 || y > 11) mark_around(t, ix, iy);
+    // A step between two cells is known with the second one. TileBuilder searches it over four cells, and
+    // farther among heights that are not sure.
+    const int x = ix & 15, y = iy & 15;
+    mark_around(t, ix, iy, x >= 4 && y >= 4 && x <= 11 && y <= 11);
     return;
   }
   const float before = cell.z;
@@ -306,8 +313,7 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   if (!cell.blocked || cell.evidence > kFree) return;
   cell.blocked = false;
   // Its height was measured before the obstacle appeared.
-  cell.range = 255;
-  cell.sure = cell.measured = false;
+  cell.known = cell.measured = cell.sure = false;
   (void)update_height(cell, z, range, measured);
   cell.obstacle_height = 0;
   mark_dirty(index);
@@ -336,10 +342,17 @@ void SurfaceMap::see_obstacle(float x, float y, float z, float obstacle_height, 
     cell = {.z = z, .known = true};
     mark_dirty(index);
   }
+  const bool was_sure = cell.sure;
+  const std::uint8_t height_before = cell.obstacle_height;
   cell.sure = cell.sure || sure || is_near(ix, iy);
   cell.obstacle_height =
       std::max(cell.obstacle_height,
                static_cast<std::uint8_t>(std::clamp(obstacle_height / kObstacleHeightUnit, 0.0f, 255.0f)));
+  // What was only doubtful may block now.
+  if (cell.blocked && (cell.sure != was_sure || cell.obstacle_height != height_before)) {
+    if (t.has_doubts) mark_dirty(index);
+    mark_around(t, ix, iy, true);
+  }
   if (cell.scan == scan_ && !sure) return;
   cell.scan = scan_;
   // Averages over the first scans; a certain obstacle keeps its position.

@@ -104,10 +104,11 @@ class SurfaceMap {
   /// Horizontal distance of a cell from the robot, m.
   double range_of(int ix, int iy) const;
   bool is_near(int ix, int iy) const;
-  /// Updates the height of a cell by one that was measured from `range`, m. Returns whether it became sure.
+  /// Updates the height of a cell by one that was measured from `range`, m. Returns whether it became sure or
+  /// measured.
   static bool update_height(GroundCell& cell, float z, float range, bool measured);
   void mark_dirty(int index);
-  /// Marks the tiles that a cell is near to. `doubtful_only`: those with doubts alone.
+  /// Marks the tiles that a cell is near to. `doubtful_only`: only tiles with doubts.
   void mark_around(const Tile& tile, int ix, int iy, bool doubtful_only = false);
   void mark_place(const BlockedPlace& place);
 

@@ -26,14 +26,16 @@ struct GroundCell {
   bool known : 1 {false};
   bool measured : 1 {false};  ///< The height was measured; else interpolated between returns.
   bool blocked : 1 {false};
-  bool sure : 1 {false};  ///< The height is exact enough to prove a step.
+  bool sure : 1 {false};  ///< Height or obstacle was seen from near, which proves a step.
   /// How exactly the height was measured: as by one scan from so far away, kRangeUnit.
   std::uint8_t range{255};
   /// Position of the obstacle relative to the cell's centre, kAsideUnit.
   std::int8_t aside_x{0}, aside_y{0};
   std::uint16_t scan{0};  ///< The last scan with a return from the obstacle.
 };
-inline constexpr float kObstacleHeightUnit = 0.02f;                        ///< m
+inline constexpr float kObstacleHeightUnit = 0.02f;  ///< m
+/// Obstacle height at the edge of missing ground, kObstacleHeightUnit; the depth is unknown.
+inline constexpr std::uint8_t kHoleHeight = 1;
 inline constexpr float kRangeUnit = 0.1f;                                  ///< m
 inline constexpr float kAsideUnit = static_cast<float>(kRouteCell) / 250;  ///< m
 

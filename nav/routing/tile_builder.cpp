@@ -20,6 +20,10 @@ constexpr int kLongSteep = 13;        // The same for heights seen from afar.
 constexpr double kSureNoise = 0.025;  // m: of the difference of two heights measured from near.
 constexpr double kNoise = 0.05;  // m: of the difference of two heights; also a kerb with a ramp behind it.
 
+std::uint8_t in_units(double cost) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(double{kUnit} * cost, double{kUnit} + 1.0, 255.0)));
+}
+
 }  // namespace
 
 // The required clearance is less than the body needs, because the nearest cell's centre lies beside the
@@ -40,8 +44,8 @@ TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, co
       slope_(limits.slope),
       climbs_stairs_(platform.stairs),
       through_unknown_(params.through_unknown),
-      doubtful_cost_(static_cast<std::uint8_t>(
-          std::lround(std::clamp(double{kUnit} * params.doubtful_cost, 1.0, 255.0)))) {
+      doubtful_cost_(in_units(params.doubtful_cost)),
+      hole_cost_(in_units(params.doubtful_hole_cost)) {
   for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2)
     cost_of_[d2] = cost_at(std::sqrt(static_cast<double>(d2)) * kRouteCell);
 }
@@ -69,8 +73,8 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       sure_[at] = cell.sure;
       all_sure_ = all_sure_ && cell.sure;
       solid_[at] = solid(cell);
-      has_obstacle_[at] = cell.blocked;
-      doubtful_[at] = cell.blocked && !solid_[at];
+      has_obstacle_[at] = solid_[at];
+      if (cell.blocked && !solid_[at]) doubtful_[at] = price_of(cell);
       if (solid_[at]) aside_[at] = {cell.aside_x, cell.aside_y};
     }
 }
@@ -82,7 +86,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   sure_.fill(false);
   all_sure_ = true;
   solid_.fill(false);
-  doubtful_.fill(false);
+  doubtful_.fill(0);
   has_obstacle_.fill(false);
   aside_.fill({0, 0});
   gather_tile(tile, tile.z, kTileHalo, kTileHalo);
@@ -101,7 +105,8 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
       if (edge || solid(cell))
         solid_[at] = true;
       else
-        doubtful_[at] = true;
+        doubtful_[at] = price_of(cell);
+      all_sure_ = all_sure_ && cell.sure;
     }
   }
   for (int dy = -1; dy <= 1; ++dy)
@@ -159,7 +164,7 @@ void TileBuilder::find_steps() {
     if (std::abs(height_[a] - height_[b]) > most)
       solid_[a] = solid_[b] = true;
     else
-      doubtful_[a] = doubtful_[b] = true;
+      doubtful_[a] = doubtful_[b] = std::max({doubtful_[a], doubtful_[b], doubtful_cost_});
   };
   for (int y = 0; y < kWindow; ++y)
     for (int x = 0; x < kWindow; ++x) {
@@ -170,7 +175,8 @@ void TileBuilder::find_steps() {
       if (height > highest) highest = height;
     }
   if (climbs_stairs_ || highest - lowest <= rise_) return;
-  for (int cells = 2; cells < (all_sure_ ? kSteep : kLongSteep); ++cells)
+  const bool high = highest - lowest > kTall * kObstacleHeightUnit;
+  for (int cells = 2; cells < (all_sure_ || !high ? kSteep : kLongSteep); ++cells)
     for (int i = 0; i < kWindow; ++i)
       for (int j = 0; j + cells < kWindow; ++j) {
         find_steep(in_window(j, i), 1, cells);
@@ -184,7 +190,7 @@ void TileBuilder::find_steps() {
 void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
   const std::size_t to = from + stride * static_cast<std::size_t>(cells);
   if (cells < kSteep && seems_steep(from, stride, cells))
-    for (std::size_t i = from + stride; i < to; i += stride) doubtful_[i] = true;
+    for (std::size_t i = from + stride; i < to; i += stride) doubtful_[i] = doubtful_cost_;
   const float rise = std::abs(height_[from] - height_[to]);
   if (!(rise > rise_)) return;
   bool sure = cells < kSteep;
@@ -205,7 +211,7 @@ bool TileBuilder::seems_steep(std::size_t from, std::size_t stride, int cells) c
   const double rise = std::abs(seen_height_[from] - seen_height_[to]);
   if (!(rise > std::max(step_, slope_ * kRouteCell * cells + kSureNoise))) return false;
   for (std::size_t i = from; i <= to; i += stride)
-    if (solid_[i] || doubtful_[i]) return false;
+    if (solid_[i] || doubtful_[i] > 0) return false;
   return !is_foot(seen_height_[from] > seen_height_[to] ? from : to);
 }
 
@@ -260,21 +266,32 @@ void TileBuilder::measure(Tile& tile) {
   if (!all_sure_) price_doubts(tile);
 }
 
+std::uint8_t TileBuilder::price_of(const GroundCell& cell) const {
+  return cell.obstacle_height <= kHoleHeight ? hole_cost_ : doubtful_cost_;
+}
+
 void TileBuilder::price_doubts(Tile& tile) const {
-  const int reach = static_cast<int>(hard_ / kRouteCell);
-  for (int y = kTileHalo - reach; y < kTileHalo + kTileSide + reach; ++y)
-    for (int x = kTileHalo - reach; x < kTileHalo + kTileSide + reach; ++x) {
-      if (!doubtful_[in_window(x, y)]) continue;
+  const int reach = std::min(kTileHalo, static_cast<int>(std::ceil(hard_ / kRouteCell)));
+  const double radius2 = hard_ * hard_ / (kRouteCell * kRouteCell);
+  std::array<std::uint8_t, kTileArea> price{};
+  for (int y = 0; y < kWindow; ++y)
+    for (int x = 0; x < kWindow; ++x) {
+      const std::uint8_t own = doubtful_[in_window(x, y)];
+      if (own == 0) continue;
       tile.has_doubts = true;
       for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
           const int u = x + dx - kTileHalo, v = y + dy - kTileHalo;
-          if (u < 0 || v < 0 || u >= kTileSide || v >= kTileSide || dx * dx + dy * dy > reach * reach)
-            continue;
-          std::uint8_t& cost = tile.cost[static_cast<std::size_t>(v * kTileSide + u)];
-          if (cost > 0) cost = std::max(cost, doubtful_cost_);
+          if (u < 0 || v < 0 || u >= kTileSide || v >= kTileSide || dx * dx + dy * dy > radius2) continue;
+          std::uint8_t& most = price[static_cast<std::size_t>(v * kTileSide + u)];
+          most = std::max(most, own);
         }
     }
+  if (!tile.has_doubts) return;
+  for (std::size_t c = 0; c < price.size(); ++c)
+    if (tile.cost[c] > 0 && price[c] > 0)
+      tile.cost[c] =
+          static_cast<std::uint8_t>(std::min(255, tile.cost[c] + price[c] - static_cast<int>(kUnit)));
 }
 
 void TileBuilder::add_node(Tile& tile, int side, int first, int last) {

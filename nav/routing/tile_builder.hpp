@@ -67,6 +67,8 @@ class TileBuilder {
   /// Whether the ground between two cells is too steep if their heights are right.
   bool seems_steep(std::size_t from, std::size_t stride, int cells) const;
   void measure(Tile& tile);
+  /// Cost of a cell that holds a doubtful obstacle.
+  std::uint8_t price_of(const GroundCell& cell) const;
   /// Raises the costs of the cells that are near to what is only doubtful.
   void price_doubts(Tile& tile) const;
   std::uint8_t cost_at(double distance) const;
@@ -81,12 +83,14 @@ class TileBuilder {
   float rise_, doubtful_rise_, unknown_cost_;
   double step_, slope_;
   bool climbs_stairs_, through_unknown_;
-  std::uint8_t doubtful_cost_;
+  std::uint8_t doubtful_cost_, hole_cost_;                         // Per length, as Tile::cost.
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // By squared clearance in cells.
   // NaN: unknown. `seen_height_` has those, too, that prove nothing.
   std::array<float, kWindow * kWindow> height_{}, seen_height_{};
-  std::array<bool, kWindow * kWindow> known_{}, sure_{}, has_obstacle_{}, solid_{}, doubtful_{};
-  bool all_sure_{true};                                                // All known cells of the window are.
+  std::array<bool, kWindow * kWindow> known_{}, sure_{}, has_obstacle_{}, solid_{};
+  std::array<std::uint8_t, kWindow * kWindow>
+      doubtful_{};       // Cost of what only seems to block; 0: nothing does.
+  bool all_sure_{true};  // All known cells of the window are.
   std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // Position of obstacles, kAsideUnit.
   std::array<float, kTileArea> distance_{};
   std::array<int, kTileArea> before_{};

@@ -25,7 +25,7 @@ class RouterClient : public Component {
   template <class T>
   using Done = std::function<void(const Result<T>&)>;
 
-  /// `services` null: the robot has no router, and every query is an error (not_supported).
+  /// `services` null: the robot has no router, and no query has an answer.
   RouterClient(Executor& strand, Log log, const Platform& platform, const Frames& frames,
                const RouteServices* services, Inputs inputs);
 
@@ -47,7 +47,7 @@ class RouterClient : public Component {
  private:
   /// Position of the body, odometry frame, m.
   const Eigen::Vector3d& place() const { return frames_.T_odom_base().position; }
-  /// Calls a service; `done` runs if the odometry frame is still the same.
+  /// Calls a service; `done` receives the answer, and whether the odometry frame is still the same.
   template <class Query, class Answer, class DoneFn>
   void ask(const Service<Query, Answer>& service, Query query, Duration deadline, DoneFn done);
 

@@ -44,11 +44,11 @@ class Localiser : public Component {
     std::function<void()> keep{};  ///< Stores the state that must survive a restart, at once.
     /// What moves around the robot, see Scan::movers.
     std::function<std::vector<Eigen::Vector3f>()> movers{};
-    /// A scan with its poses. `lidar`: what it came with, without points.
+    /// A scan with its poses. `lidar`: the sample that it was made from, without points.
     std::function<void(std::shared_ptr<Scan> scan, const LidarScan& lidar)> scan{};
   };
 
-  /// All must outlive it but `outputs`.
+  /// `params`, `frames`, `memory` and `notices` must outlive it.
   Localiser(const AgentParams& params, Executor& strand, Log log, Frames& frames, PlaceMemory& memory,
             const Notices& notices, Outputs outputs);
 
@@ -88,7 +88,6 @@ class Localiser : public Component {
   void release_scan();
   /// Handles odometry that began again elsewhere.
   void jumped();
-  void begin_frame();
   void make_keyframe(const std::shared_ptr<const Scan>& scan);
   /// Compares a scan with the stored keyframes after a restart.
   void compare(const std::shared_ptr<const Scan>& scan);
@@ -114,7 +113,7 @@ class Localiser : public Component {
   Localisation reported_{Localisation::starting};
   Time changed_at_{};  ///< Since then the odometry has a health that was not reported.
   std::optional<Time> jump_reported_{};
-  std::optional<Time> search_began_{};  ///< The last one.
+  std::optional<Time> search_began_{};  ///< When the last search began.
   bool not_searched_{};                 ///< The place may be too far away to search; that was reported.
   PlaceAgreement agreement_{};          ///< Of the results of the search so far.
   int comparisons_{};                   ///< Scans that did not fit the stored keyframes.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/radio/radio_edge.hpp"
 
-#include <algorithm>
-#include <map>
 #include <utility>
 
 #include "adit/authority.h"

@@ -19,7 +19,7 @@ struct ComponentIo;
 
 namespace adit::agent {
 
-/// The agent's readers and writers on the radio domain. Passes received messages to the command interface and
+/// The agent's readers and writers on the radio domain. Passes received messages to the command component and
 /// the directory, and numbers and sends the agent's messages. Runs on the command strand.
 class RadioEdge {
  public:

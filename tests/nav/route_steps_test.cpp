@@ -64,7 +64,7 @@ TEST(RouteSteps, AHighEdgeIsOneAlsoFromAfar) {
 }
 
 // A ring of two ways: straight on over an edge that only one scan showed, from afar, or a long way round. A
-// robot that took the edge for one turned back in the middle of a corridor.
+// robot that took the edge for a wall turned back in the middle of a corridor.
 TEST(RouteSteps, ALongWayRoundIsNoAnswerToADoubt) {
   const RouteParams params;
   SurfaceMap map(params, ScanProfile::most_wrong(wheeled()));

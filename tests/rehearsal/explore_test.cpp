@@ -7,7 +7,7 @@ namespace {
 
 TEST(Explore, SeesAllThatCanBeReachedAlthoughItsAgentDies) {
   const RunReport report = run_text(
-      "world: {generate: blocks, size: 2}\nduration: 116\nlink: wifi\n"
+      "world: {generate: blocks, size: 2}\nduration: 151\nlink: wifi\n"
       "robots: [{id: r1, platform: wheeled, pose: [1.6, 1.6, 0]}]\n"
       "basestations: [{id: op1, pose: [1.6, 1.6]}]\n"
       "script: [{at: 1, by: op1, do: take r1}, {at: 2, by: op1, do: explore r1 --after wait}]\n"
@@ -15,10 +15,10 @@ TEST(Explore, SeesAllThatCanBeReachedAlthoughItsAgentDies) {
       "expect:\n"
       "  - {by: 5, robot: r1, explore: exploring}\n"
       "  - {at: 30, robot: r1, explore: exploring, mode: explore}\n"
-      "  - {by: 100, explored_at_least: 0.97}\n"
-      "  - {at: 100, repeat_at_most: 0.35}\n"
-      "  - {by: 115, robot: r1, explore: done}\n"
-      "  - {at: 115.5, robot: r1, explore: done, mode: hold}\n"
+      "  - {by: 130, explored_at_least: 0.97}\n"
+      "  - {at: 130, repeat_at_most: 0.35}\n"
+      "  - {by: 150, robot: r1, explore: done}\n"
+      "  - {at: 150.5, robot: r1, explore: done, mode: hold}\n"
       "  - {always: no_collision}\n",
       "explore.yaml");
   for (const std::string& line : report.complaints()) ADD_FAILURE() << line;
