@@ -237,6 +237,9 @@ void SurfaceMap::mark_around(const Tile& t, int ix, int iy, bool doubtful_only) 
   const int lx = ix & 15, ly = iy & 15;
   const int dx = lx < kTileHalo ? -1 : lx >= kTileSide - kTileHalo ? 1 : 0;
   const int dy = ly < kTileHalo ? -1 : ly >= kTileSide - kTileHalo ? 1 : 0;
+  // Ground of another floor is an edge of this one.
+  for (int i = first(t.tx, t.ty); i >= 0; i = tile(i).next)
+    if (tile(i).has_doubts) mark_dirty(i);
   for (std::size_t k = 0; k < 8; ++k) {
     const bool near_x = kAroundX[k] == 0 || kAroundX[k] == dx, near_y = kAroundY[k] == 0 || kAroundY[k] == dy;
     if (!near_x || !near_y) continue;
@@ -244,9 +247,6 @@ void SurfaceMap::mark_around(const Tile& t, int ix, int iy, bool doubtful_only) 
       if ((!doubtful_only || tile(i).has_doubts) && std::abs(tile(i).z - t.z) <= 2 * kFloorSeparation)
         mark_dirty(i);
   }
-  // Ground of another floor is an edge of this one.
-  for (int i = first(t.tx, t.ty); i >= 0; i = tile(i).next)
-    if (&tile(i) != &t && tile(i).has_doubts) mark_dirty(i);
 }
 
 double SurfaceMap::range_of(int ix, int iy) const {
@@ -300,10 +300,7 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
     return;
   }
   const float before = cell.z;
-  if (update_height(cell, z, range, measured)) {
-    if (t.has_doubts) mark_dirty(index);
-    mark_around(t, ix, iy, true);
-  }
+  if (update_height(cell, z, range, measured)) mark_around(t, ix, iy, true);
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
   if (std::abs(cell.z - before) > 0.05f) mark_around(t, ix, iy);  // A step may have appeared or disappeared.
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
@@ -349,10 +346,8 @@ void SurfaceMap::see_obstacle(float x, float y, float z, float obstacle_height, 
       std::max(cell.obstacle_height,
                static_cast<std::uint8_t>(std::clamp(obstacle_height / kObstacleHeightUnit, 0.0f, 255.0f)));
   // What was only doubtful may block now.
-  if (cell.blocked && (cell.sure != was_sure || cell.obstacle_height != height_before)) {
-    if (t.has_doubts) mark_dirty(index);
+  if (cell.blocked && (cell.sure != was_sure || cell.obstacle_height != height_before))
     mark_around(t, ix, iy, true);
-  }
   if (cell.scan == scan_ && !sure) return;
   cell.scan = scan_;
   // Averages over the first scans; a certain obstacle keeps its position.

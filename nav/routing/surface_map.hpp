@@ -108,7 +108,8 @@ class SurfaceMap {
   /// measured.
   static bool update_height(GroundCell& cell, float z, float range, bool measured);
   void mark_dirty(int index);
-  /// Marks the tiles that a cell is near to. `doubtful_only`: only tiles with doubts.
+  /// Marks the other tiles that a cell is near to, and its own if it has doubts. `doubtful_only`: only tiles
+  /// with doubts.
   void mark_around(const Tile& tile, int ix, int iy, bool doubtful_only = false);
   void mark_place(const BlockedPlace& place);
 
