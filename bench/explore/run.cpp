@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "core/config/platform_file.hpp"
+#include "core/contract/robot.hpp"
 #include "core/time/random.hpp"
-#include "robot_agent/common/exploration.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
 #include "sim/world/generate.hpp"
 #include "sim/world/standing_map.hpp"
@@ -97,9 +97,9 @@ Result<ExploreOutcome> run(const ExploreCourse& course, const sim::AgentFactory&
   params.workers = 1;
   params.make_agent = agents;
   params.ended = [&out](const sim::RunState& state) {
-    const auto is = static_cast<contract::ExplorationPhase>(state.witness.word("r1").exploration);
-    if (is == contract::ExplorationPhase::done) out.done = seconds(state.now) - kAsked;
-    return is == contract::ExplorationPhase::done || is == contract::ExplorationPhase::ended;
+    const auto is = static_cast<adit::contract::ExplorationPhase>(state.witness.word("r1").exploration);
+    if (is == adit::contract::ExplorationPhase::done) out.done = seconds(state.now) - kAsked;
+    return is == adit::contract::ExplorationPhase::done || is == contract::ExplorationPhase::ended;
   };
   const auto done = sim::rehearse(*scenario, *world, params);
   if (!done) return done.error();
