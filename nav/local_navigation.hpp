@@ -7,6 +7,7 @@
 #include "core/geometry/scan_points.hpp"
 #include "nav/planners/make_planner.hpp"
 #include "nav/recovery/escape.hpp"
+#include "nav/recovery/way_back.hpp"
 #include "nav/terrain/air_map.hpp"
 #include "nav/terrain/terrain_map.hpp"
 #include "nav/tracking/prediction.hpp"
@@ -31,13 +32,13 @@ class LocalNavigation {
 
   /// See TerrainMap::add_scan.
   void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
-  /// Plans over the terrain seen so far; see Planner::plan. When the planner finds no path to a goal and less
-  /// than Escape::kClear is free beside the body, the plan leads out of there at Escape::kSpeed; when that
-  /// fails too, its reason is start_in_collision. Before the first scan no space is known to be free: the
-  /// plan is blocked with Reason::terrain_stale. `border`: places in the odometry frame that no path may
-  /// touch, m.
+  /// Plans over the terrain seen so far; see Planner::plan, and WayBack and Escape for the targets `back_up`
+  /// and `leave`. A blocked plan has a cause. A plan to leave names the side of what nearly touches the body;
+  /// when no motion leads away from it, its reason is start_in_collision. Before the first scan no space is
+  /// known to be free: the plan is blocked with Reason::terrain_stale. `border`: places that no path may
+  /// touch; `peers`: centre and radius of the other robots; odometry frame, m.
   Plan plan(const Target& target, const Pose2& pose, double stamp_s,
-            std::span<const Eigen::Vector2f> border = {});
+            std::span<const Eigen::Vector2f> border = {}, std::span<const Eigen::Vector3f> peers = {});
 
   const TerrainMap& terrain() const { return terrain_; }
   /// Writes the centres of the impassable cells into `cells`, odometry frame, m.
@@ -48,6 +49,18 @@ class LocalNavigation {
   void clear();
 
  private:
+  /// Obstacles of one plan: those of the terrain, those of the border, and the predicted places of movers.
+  struct Parts {
+    std::size_t terrain{}, standing{};
+  };
+  Plan plan_path(const Target& target, const Pose2& pose, double stamp_s, const Parts& parts);
+  /// What is nearest on the straight line to a goal, and its distance along that line, m.
+  struct Hindrance {
+    Cause cause{Cause::fixed};
+    float along{};
+  };
+  Hindrance hindrance(const Target& target, const Pose2& pose, const Parts& parts,
+                      std::span<const Eigen::Vector3f> peers) const;
   /// Speed of the robot between the last two plans, m/s.
   double speed(const Pose2& pose, double stamp_s);
 
@@ -58,6 +71,7 @@ class LocalNavigation {
   Tracker tracker_;
   std::unique_ptr<Planner> planner_;
   Escape escape_;
+  WayBack way_back_;
   std::vector<ObstaclePoint> obstacles_{};  ///< Of one plan.
   bool has_scan_{false};
   Pose2 last_pose_{};

@@ -47,8 +47,7 @@ bool run(unsigned seed) {
     update.add(t1 - t0);
     search.add(t2 - t1);
     if (!route.found()) return false;
-    drive.step = drive.route_follower.step(drive.planner, {at.x, at.y, 0}, {kGoal, kGoal, std::nan("")},
-                                           drive.loop.last.blocked, drive.loop.time);
+    drive.next({kGoal, kGoal});
     drive.drive();
     arrived = drive.step.last && drive.loop.last.arrived;
   }

@@ -27,26 +27,30 @@ class Walk {
   }
 
   double remaining() const { return plan_.length - at_; }
-  void advance(double distance) { at_ = std::min(plan_.length, at_ + distance); }
+  /// A path that does not end in a stop goes straight on beyond its end.
+  void advance(double distance) {
+    at_ = plan_.end_speed > 0 ? at_ + distance : std::min(plan_.length, at_ + distance);
+  }
   Pose2 pose() const {
+    if (at_ > plan_.length) return path_.back() * Pose2{at_ - plan_.length, 0, 0};
     const auto [i, part] = spot();
     const Pose2 &a = path_[i], &b = path_[i + 1];
     return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y),
             wrap_angle(a.yaw + part * wrap_angle(b.yaw - a.yaw))};
   }
   /// Curvature at this point, rad/m.
-  double curvature() const { return bend(spot().index); }
+  double curvature() const { return at_ > plan_.length ? 0.0 : bend(spot().index); }
   /// Interpolates a table over the path's poses at this point.
   double at(const std::array<double, Plan::kMaxPath>& table) const {
     const auto [i, part] = spot();
     return table[i] + part * (table[i + 1] - table[i]);
   }
-  /// Computes the speed limit at each pose of the path from the turn rate `max_turn` (rad/s), the stop at the
-  /// path's end, and braking for both with `braking` (m/s2). `max_swing`: maximum change of curvature over
-  /// time, rad/m/s; 0: unlimited.
+  /// Computes the speed limit at each pose of the path from the turn rate `max_turn` (rad/s), the speed at
+  /// the path's end, and braking for both with `braking` (m/s2). `max_swing`: maximum change of curvature
+  /// over time, rad/m/s; 0: unlimited.
   void speeds(double cruise, double max_turn, double max_swing, double braking,
               std::array<double, Plan::kMaxPath>& top) const {
-    double next = 0.0;  // Squared.
+    double next = plan_.end_speed * plan_.end_speed;  // Squared.
     for (std::size_t i = path_.size(); i-- > 0;) {
       const double bent = i + 1 < path_.size() ? std::fabs(bend(i)) : 0.0;
       double own = bent * cruise > max_turn ? max_turn / bent : cruise;
@@ -54,7 +58,7 @@ class Walk {
         const double swing = std::fabs(bend(i + 1) - bend(i)) / spacing_;
         if (swing * own > max_swing) own = max_swing / swing;
       }
-      if (i + 1 == path_.size()) own = 0.0;
+      if (i + 1 == path_.size()) own = std::min(own, plan_.end_speed);
       const double squared = std::min(own * own, next + 2 * braking * spacing_);
       top[i] = std::sqrt(squared);
       next = squared;
@@ -94,7 +98,7 @@ class IlqrController final : public Controller {
 
  protected:
   Twist2 track(const Pose2& odom, const Place& place, double dt) override {
-    if (place.remaining < kShortestPath) {
+    if (place.remaining < kShortestPath && plan().end_speed <= 0) {
       rest();
       return {};
     }
@@ -136,7 +140,7 @@ class IlqrController final : public Controller {
       walk.advance(speed * kLookAheadStep);
       r.pose = walk.pose();
       const double turn = walk.curvature() * speed;
-      r.twist = walk.remaining() > 0 ? Twist2{sign * speed, 0, turn} : Twist2{};
+      r.twist = walk.remaining() > 0 || plan().end_speed > 0 ? Twist2{sign * speed, 0, turn} : Twist2{};
     }
   }
 

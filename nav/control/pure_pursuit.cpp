@@ -22,7 +22,8 @@ Twist2 PurePursuit::track(const Pose2& odom, const Place& place, double) {
   if (plan().reverse) to = -to;  // The robot drives backwards: its rear counts as its front.
   const double distance = to.norm();
   const double share = params().braking_share * platform().max_acceleration;
-  double speed = std::min({plan().max_speed, platform().max_speed, std::sqrt(2 * share * place.remaining)});
+  double speed = std::min({plan().max_speed, platform().max_speed,
+                           std::sqrt(plan().end_speed * plan().end_speed + 2 * share * place.remaining)});
   if (distance < kShortest && place.remaining < kShortest) return {};
 
   if (platform().sideways()) {

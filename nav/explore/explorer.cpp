@@ -9,14 +9,14 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kArrived = 0.5;       // m
-constexpr int kLooks = 1;              // Scans at a viewpoint before what it does not show is given up.
-constexpr double kSettled = 3.0;       // s without a frontier before the exploration is done.
-constexpr double kFirstPause = 60.0;   // s before a place that was blocked is tried again; doubles each time.
-constexpr double kSamePlace = 1.0;     // m
-constexpr double kSameFrontier = 3.0;  // m between the centres: the width of a group.
-constexpr double kAlong = 1.0;         // Between places on the straight line to a frontier, m.
-constexpr double kReplaced = 4.0;      // A goal is replaced when it is nearer, m: twice the braking distance.
+constexpr double kArrived = 0.5;      // m
+constexpr int kLooks = 1;             // Scans at a viewpoint before what it does not show is given up.
+constexpr double kSettled = 3.0;      // s without a frontier before the exploration is done.
+constexpr double kFirstPause = 60.0;  // s before a place that was blocked is tried again; doubles each time.
+constexpr double kSameViewpoint = 1.0;  // m
+constexpr double kSameFrontier = 3.0;   // m between the centres: the width of a group.
+constexpr double kAlong = 1.0;          // Between places on the straight line to a frontier, m.
+constexpr double kReplaced = 4.0;  // A goal is replaced when it is nearer, m: twice the braking distance.
 constexpr std::size_t kViewpoints = 6;  // Of a frontier, the nearest to the robot, besides the goal.
 constexpr std::size_t kSamples = 8;     // Voxels of a frontier that are looked at for a viewpoint.
 constexpr std::array kAway{2.0, 4.0, 6.0, 8.0, 10.0};  // Of a viewpoint from its frontier, m.
@@ -102,7 +102,7 @@ bool Explorer::satisfied(const Goal& goal) const {
 
 void Explorer::defer(const Eigen::Vector3d& place, double stamp_s) {
   const auto same = std::find_if(deferred_.begin(), deferred_.end(), [&place](const Deferred& d) {
-    return (d.place - place).norm() < kSamePlace;
+    return (d.place - place).norm() < kSameViewpoint;
   });
   if (same != deferred_.end()) {
     same->pause *= 2;
@@ -117,7 +117,7 @@ void Explorer::defer(const Eigen::Vector3d& place, double stamp_s) {
 
 bool Explorer::is_deferred(const Eigen::Vector3d& place, double stamp_s) const {
   return std::any_of(deferred_.begin(), deferred_.end(), [&](const Deferred& d) {
-    return stamp_s < d.until && (d.place - place).norm() < kSamePlace;
+    return stamp_s < d.until && (d.place - place).norm() < kSameViewpoint;
   });
 }
 

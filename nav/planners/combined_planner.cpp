@@ -34,7 +34,7 @@ bool CombinedPlanner::is_tight(const Target& target, const Pose2& pose,
 
 void CombinedPlanner::choose(const Target& target, const Pose2& pose,
                              std::span<const ObstaclePoint> obstacles) {
-  if (target.kind != Target::Kind::goal || !target.on_route) {
+  if (target.kind != Target::Kind::goal || target.route == 0) {
     tight_ = instead_ = false;
     return;
   }
@@ -56,7 +56,7 @@ Plan CombinedPlanner::plan(const Target& target, const Pose2& pose, std::span<co
                  : open_.plan(target, pose, obstacles, stamp_s);
   };
   Plan plan = with(tight_);
-  if (!plan.blocked || target.kind != Target::Kind::goal || !target.on_route || target.held) return plan;
+  if (!plan.blocked || target.kind != Target::Kind::goal || target.route == 0) return plan;
   const Plan other = with(!tight_);
   if (other.blocked || other.arrived) return plan;
   tight_ = !tight_;

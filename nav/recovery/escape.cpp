@@ -28,8 +28,7 @@ Escape::Escape(const Platform& platform)
 }
 
 std::optional<Plan> Escape::plan(const Pose2& pose, std::span<const ObstaclePoint> obstacles) {
-  find_side(obstacles);
-  if (side_ == Side::none) return std::nullopt;
+  if (side_of(obstacles) == Side::none) return std::nullopt;
   points_.fill(obstacles, 0.0f);
   if (++round_ == 0) {
     std::fill(closed_.begin(), closed_.end(), 0);
@@ -88,17 +87,18 @@ void Escape::offer(std::int32_t from, const Pose2& motion, int direction, float 
   std::push_heap(open_.begin(), open_.end());
 }
 
-void Escape::find_side(std::span<const ObstaclePoint> obstacles) {
+Side Escape::side_of(std::span<const ObstaclePoint> obstacles) {
   float deepest = -static_cast<float>(kClear);
-  side_ = Side::none;
+  Side side = Side::none;
   for (const ObstaclePoint& o : obstacles) {
     const float depth = o.cost < 1.0f ? -1.0f : body_.depth(o.x, o.y);
     if (depth <= deepest) continue;
     deepest = depth;
     const double along = o.x / platform_.length, across = o.y / platform_.width;
-    side_ = std::fabs(along) > std::fabs(across) ? (along > 0 ? Side::ahead : Side::behind)
-                                                 : (across > 0 ? Side::left : Side::right);
+    side = std::fabs(along) > std::fabs(across) ? (along > 0 ? Side::ahead : Side::behind)
+                                                : (across > 0 ? Side::left : Side::right);
   }
+  return side;
 }
 
 Plan Escape::write(std::int32_t index, const Pose2& pose) const {

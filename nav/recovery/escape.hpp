@@ -28,8 +28,8 @@ class Escape {
   /// Plans the first part of the path that is driven in one direction. Returns nothing if there is no path
   /// within 1.2 m, or `kClear` is free already. `pose`: odometry frame; `obstacles`: robot's frame at `pose`.
   std::optional<Plan> plan(const Pose2& pose, std::span<const ObstaclePoint> obstacles);
-  /// Side of the obstacle that was nearest at the last plan(); none: at least `kClear` was free.
-  Side side() const { return side_; }
+  /// Side of the nearest obstacle; none: at least `kClear` is free.
+  Side side_of(std::span<const ObstaclePoint> obstacles);
 
  private:
   struct Node {
@@ -53,14 +53,12 @@ class Escape {
 
   void expand(std::int32_t index);
   void offer(std::int32_t from, const Pose2& motion, int direction, float cost);
-  void find_side(std::span<const ObstaclePoint> obstacles);
   Plan write(std::int32_t index, const Pose2& pose) const;
 
   Platform platform_;
   Footprint body_;
   double bend_;  ///< Maximum curvature, rad/m.
   SolidPoints points_{};
-  Side side_{Side::none};
   std::vector<Node> nodes_{};
   std::vector<Open> open_{};
   std::vector<std::uint32_t> closed_;

@@ -8,8 +8,8 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kSameGoal = 0.05;    // m
-constexpr double kReachAhead = 0.9;   // m: a route that is blocked is blocked at this distance ahead.
+constexpr double kMoved = 0.05;       // m: a goal that moved by more has another route.
+constexpr double kReachAhead = 0.9;   // m: without a passage, a blocked route is blocked so far ahead.
 constexpr double kSampling = 0.5;     // m
 constexpr double kNextCorner = 5.0;   // m
 constexpr double kSamePassage = 0.5;  // m: the estimated centre moves with the visible part of a passage.
@@ -21,6 +21,9 @@ constexpr double kReported = 3.0;       // m before a passage: it is reported to
 constexpr double kNear = 2.5;  // m: from nearer, only changes larger than the following replace a passage.
 constexpr double kShifted = 0.10;  // m
 constexpr double kTurned = 5.0 * M_PI / 180.0;
+constexpr double kOneCorner =
+    110.0 * M_PI / 180.0;         // rad: greatest turn that the local planner drives itself.
+constexpr double kRoomy = 1.3;    // A metre of a route with room costs at most this, m.
 constexpr double kDetour = 1.03;  // A straight line may cost at most this factor of the route.
 
 // The point of a polyline at a length from its beginning. `end`: the polyline is shorter.
@@ -34,12 +37,6 @@ Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double leng
   }
   end = true;
   return points.back();
-}
-
-// Compares two places. A missing height (NaN) equals only another missing height.
-bool same_place(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const bool level = std::isnan(a.z()) ? std::isnan(b.z()) : std::abs(a.z() - b.z()) <= kSameGoal;
-  return level && (a - b).head<2>().norm() <= kSameGoal;
 }
 
 // The place on the axis of a passage at a distance behind its centre.
@@ -83,25 +80,35 @@ void RouteFollower::advance(RoutePlanner& planner, const Eigen::Vector3d& place)
   }
 }
 
-void RouteFollower::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked,
-                                  double stamp_s) {
-  if (!blocked || !route_.found()) {
-    blocked_since_.reset();
-    return;
-  }
-  if (!blocked_since_) blocked_since_ = stamp_s;
-  if (stamp_s - *blocked_since_ < params_.blocked || stamp_s < retry_until_) return;
-  blocked_since_.reset();
-  if (approached_passage_ && !has_failed(*approached_passage_)) {
-    // The robot has time to back up and try again.
-    failed_passage_ = approached_passage_;
-    retry_until_ = stamp_s + params_.retry;
-    return;
-  }
-  failed_passage_.reset();  // The next approach may line up again.
+// Marks what blocks the route, which the scans do not show, and looks for another one. Where only another
+// way would help, and there is none, nothing is marked.
+void RouteFollower::look_around(RoutePlanner& planner, const RouteRequest& request) {
   bool end = false;
-  const Eigen::Vector3d there = point_at(route_.points, kReachAhead, end);
-  if (!end) planner.block({there.x(), there.y(), place.z()}, stamp_s);
+  Eigen::Vector3d there = point_at(route_.points, kReachAhead, end);
+  if (passage_ && (passage_->middle - request.place).head<2>().norm() < kAtPassage) {
+    there = passage_->middle;
+    end = false;
+  }
+  if (end) return;
+  planner.block({there.x(), there.y(), request.place.z()}, request.stamp_s);
+  Route other = planner.plan(request.place, request.goal);
+  if (!other.found() && request.replan->only_if_found) return planner.unblock();
+  passage_.reset();
+  take(std::move(other), false);
+}
+
+void RouteFollower::take(Route route, bool same) {
+  route_ = std::move(route);
+  if (route_.found() && !same) ++number_;
+}
+
+void RouteFollower::clear() {
+  route_ = {};
+  goal_id_.reset();
+  unreachable_since_.reset();
+  looked_.reset();
+  passage_.reset();
+  frozen_ = false;
 }
 
 // Cost of the first `length` metres of the route.
@@ -117,10 +124,6 @@ double RouteFollower::cost_to(RoutePlanner& planner, double length) const {
     length -= leg;
   }
   return cost;
-}
-
-bool RouteFollower::has_failed(const Eigen::Vector3d& passage) const {
-  return failed_passage_ && (*failed_passage_ - passage).norm() < kSamePassage;
 }
 
 // Whether the robot has not left the passage yet, and the route still leads through it.
@@ -141,10 +144,7 @@ bool RouteFollower::leads_through(const NarrowPassage& passage, const Eigen::Vec
 // Updates the passage that the robot is in or approaches. A passage seen from near is fixed unless it turns
 // out to be clearly elsewhere: a target that moves with each scan would keep the robot turning before it.
 void RouteFollower::watch_passage(RoutePlanner& planner, const Eigen::Vector3d& place) {
-  if (passage_ && !leads_through(*passage_, place)) {
-    if (has_failed(passage_->middle)) failed_passage_.reset();
-    passage_.reset();
-  }
+  if (passage_ && !leads_through(*passage_, place)) passage_.reset();
   const auto seen = planner.passage(route_.points, kReported);
   if (!seen || !planner.line(seen->middle, on_axis(*seen, kBeyondPassage), {.relax_start = true}).passable)
     return;
@@ -158,74 +158,144 @@ void RouteFollower::watch_passage(RoutePlanner& planner, const Eigen::Vector3d& 
     const double aside = std::abs(passage_->axis.x() * off.y() - passage_->axis.y() * off.x());
     if (aside < kShifted && passage_->axis.dot(seen->axis) > std::cos(kTurned)) return;
   }
-  if (!same && failed_passage_ && !has_failed(seen->middle)) {
-    failed_passage_.reset();
-    retry_until_ = -std::numeric_limits<double>::infinity();
-  }
   passage_ = seen;
   frozen_ = (seen->middle - place).head<2>().norm() < kNear;
+}
+
+// The distance of a target to which no straight line leads. With room, the local planner drives round a
+// corner by itself, wider and faster than to a target in the corner; but not round two.
+double RouteFollower::least_ahead(RoutePlanner& planner) const {
+  double length = 0, turned = 0;
+  for (std::size_t i = 0; i + 1 < route_.points.size() && length < params_.sweeping_ahead; ++i) {
+    const Eigen::Vector2d leg = (route_.points[i + 1] - route_.points[i]).head<2>();
+    if (i > 0) {
+      const Eigen::Vector2d before = (route_.points[i] - route_.points[i - 1]).head<2>();
+      turned += std::fabs(std::atan2(before.x() * leg.y() - before.y() * leg.x(), before.dot(leg)));
+    }
+    if (turned > kOneCorner) break;
+    length += leg.norm();
+  }
+  if (length < params_.sweeping_ahead) return params_.least_ahead;
+  length = params_.sweeping_ahead;
+  const bool roomy = cost_to(planner, length) <= kRoomy * length + kRouteCell;
+  return roomy ? length : params_.least_ahead;
 }
 
 // Computes the farthest point of the route, up to `ahead`, with a straight line to it that keeps the same
 // clearance as the route.
 RouteStep RouteFollower::along(RoutePlanner& planner, const Eigen::Vector3d& place) {
-  approached_passage_.reset();
-  RouteStep step{RouteStep::State::along, {}, false};
+  RouteStep step{.state = RouteStep::State::along, .route = number_, .last = false};
   if (params_.passages) watch_passage(planner, place);
   if (passage_) {
-    const Eigen::Vector2d rest = (passage_->middle - place).head<2>();
-    if (rest.norm() < kAtPassage && rest.dot(passage_->axis) > 0) approached_passage_ = passage_->middle;
     step.target = on_axis(*passage_, kBeyondPassage);
     step.passage = passage_;
     return step;
   }
   const Eigen::Vector3d from{place.x(), place.y(), route_.points.front().z()};
-  for (double ahead = params_.ahead; ahead >= params_.least_ahead; ahead -= kSampling) {
+  const double least = least_ahead(planner);
+  for (double ahead = params_.ahead; ahead >= least; ahead -= kSampling) {
     step.target = point_at(route_.points, ahead, step.last);
     const LineCost direct = planner.line(from, step.target, {.relax_start = true, .relax_end = step.last});
     if (direct.passable && direct.cost <= kDetour * cost_to(planner, ahead) + kRouteCell) return step;
   }
-  step.target = point_at(route_.points, params_.least_ahead, step.last);
+  step.target = point_at(route_.points, least, step.last);
   return step;
 }
 
-RouteStep RouteFollower::step(RoutePlanner& planner, const Eigen::Vector3d& place,
-                              const Eigen::Vector3d& goal, bool blocked, double stamp_s) {
-  if (!goal_ || !same_place(*goal_, goal)) {
-    clear();
-    goal_ = goal;
-  }
-  if (planner.map().used() == 0) return {RouteStep::State::straight, goal, true};
-  bool usable = route_.found(), longer = false;
-  if (usable) advance(planner, place);
-  watch_blocked(planner, place, blocked, stamp_s);
-  const bool lost = usable && !planner.measure(route_);
-  usable = usable && !lost;
-  if (lost || !looked_ || stamp_s - *looked_ >= params_.look) {
-    looked_ = stamp_s;
-    Route other = planner.plan(place, goal);
-    const bool better =
-        other.cost < route_.cost * params_.switch_ratio && other.cost < route_.cost - params_.gain;
-    if (!usable || (other.found() && better)) {
-      longer = other.found() && other.length > route_.length + params_.gain;
-      route_ = std::move(other);
+// The speed at the target from which the robot can still drive round the next corners and stop at the goal.
+// A corner of angle a that is cut by c has the radius c cos(a/2) / (1 - cos(a/2)).
+double RouteFollower::end_speed(const RouteStep& step, const Eigen::Vector3d& place, bool pass) const {
+  const double braking = 2 * params_.braking_share * max_acceleration_;
+  const double at_goal = pass ? std::sqrt(braking * params_.passing) : 0.0;
+  if (step.last) return std::min(at_goal, max_speed_);
+  // The route behind the target, which lies beside it: from the corner after the nearest place on it.
+  std::size_t after = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < route_.points.size() && i < RouteStep::kMaxAhead; ++i) {
+    const Eigen::Vector2d way = (route_.points[i + 1] - route_.points[i]).head<2>();
+    const Eigen::Vector2d to = (step.target - route_.points[i]).head<2>();
+    const double length2 = way.squaredNorm();
+    const double t = length2 > 0 ? std::clamp(to.dot(way) / length2, 0.0, 1.0) : 0.0;
+    if (const double d = (to - t * way).norm(); d < least - 1e-6) {
+      least = d;
+      after = i + 1;
     }
   }
+  std::vector<Eigen::Vector2d> corners{place.head<2>(), step.target.head<2>()};
+  for (std::size_t i = after; i < route_.points.size() && corners.size() < RouteStep::kMaxAhead; ++i)
+    if ((route_.points[i].head<2>() - corners.back()).norm() > kRouteCell)
+      corners.push_back(route_.points[i].head<2>());
+  double squared = corners.size() < RouteStep::kMaxAhead ? at_goal * at_goal : 0.0;
+  for (std::size_t i = corners.size() - 1; i-- > 1;) {
+    const Eigen::Vector2d in = corners[i] - corners[i - 1], out = corners[i + 1] - corners[i];
+    squared += braking * out.norm();
+    if (in.norm() < kRouteCell) continue;
+    const double cosine = std::clamp(in.dot(out) / (in.norm() * out.norm()), -1.0, 1.0);
+    const double half = std::sqrt((1 + cosine) / 2);  // Cosine of half the angle.
+    if (half > 1 - 1e-6) continue;
+    const double fastest = 0.8 * max_turn_ * params_.cuts * half / (1 - half);
+    squared = std::min(squared, fastest * fastest);
+  }
+  return std::min(std::sqrt(squared), max_speed_);
+}
+
+void RouteFollower::add_ahead(RouteStep& step) const {
+  step.corners = route_.points.size();
+  for (std::size_t i = 0; i + 1 < step.corners; ++i)
+    step.length += (route_.points[i + 1] - route_.points[i]).norm();
+  const std::size_t count = std::min(step.corners, RouteStep::kMaxAhead);
+  step.ahead.assign(route_.points.begin(), route_.points.begin() + static_cast<std::ptrdiff_t>(count));
+  // The beginning of a route is dropped before the rest is measured again.
+  if (route_.unknown.size() + 1 < step.corners) return;
+  const std::size_t dropped = route_.unknown.size() + 1 - step.corners;
+  for (std::size_t leg = 0; leg + 1 < count; ++leg)
+    if (route_.unknown[leg + dropped]) step.unknown_ahead |= 1U << leg;
+}
+
+RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request) {
+  const Eigen::Vector3d& place = request.place;
+  const bool level = std::isnan(goal_.z()) == std::isnan(request.goal.z()) &&
+                     !(std::abs(goal_.z() - request.goal.z()) > kMoved);
+  const bool moved = goal_id_ && (!level || (goal_ - request.goal).head<2>().norm() > kMoved);
+  if (!goal_id_ || *goal_id_ != request.goal_id) clear();
+  if (!goal_id_ || moved) goal_ = request.goal;
+  goal_id_ = request.goal_id;
+  if (planner.map().used() == 0) return {.replanned = request.replan.has_value()};
+  if (request.free) {
+    planner.unblock();
+    looked_.reset();
+  }
+  bool usable = route_.found();
+  if (usable) advance(planner, place);
+  if (usable && request.replan) look_around(planner, request);
+  usable = route_.found();
+  const bool lost = usable && !planner.measure(route_);
+  usable = usable && !lost;
+  if (lost || moved || !looked_ || request.stamp_s - *looked_ >= params_.look) {
+    looked_ = request.stamp_s;
+    Route other = planner.plan(place, request.goal);
+    const bool better =
+        other.cost < route_.cost * params_.switch_ratio && other.cost < route_.cost - params_.gain;
+    if (!usable || (other.found() && (better || moved)))
+      take(std::move(other),
+           route_.found() && !better && std::fabs(other.length - route_.length) < params_.gain);
+  }
+  RouteStep step{};
   if (route_.found()) {
     unreachable_since_.reset();
-    RouteStep step = along(planner, place);
-    double left = 0;
-    for (std::size_t i = 0; i + 1 < route_.points.size(); ++i)
-      left += (route_.points[i + 1] - route_.points[i]).norm();
-    step.length = left;
-    step.stuck = progress_.stuck(left, longer, stamp_s);
-    return step;
+    step = along(planner, place);
+    step.end_speed = end_speed(step, place, request.pass);
+    add_ahead(step);
+  } else if (route_.status == RouteStatus::start_blocked) {
+    step.state = RouteStep::State::start_blocked;
+  } else if (planner.has_blocked_places()) {
+    step.state = RouteStep::State::blocked;
+  } else {
+    if (!unreachable_since_) unreachable_since_ = request.stamp_s;
+    if (request.stamp_s - *unreachable_since_ >= params_.proof) step.state = RouteStep::State::unreachable;
   }
-  if (route_.status != RouteStatus::unreachable) return {RouteStep::State::straight, goal, true};
-  if (planner.has_blocked_places()) return {RouteStep::State::blocked, goal, true};
-  if (!unreachable_since_) unreachable_since_ = stamp_s;
-  if (stamp_s - *unreachable_since_ < params_.proof) return {RouteStep::State::blocked, goal, true};
-  return {RouteStep::State::unreachable, goal, true};
+  step.replanned = request.replan.has_value();
+  return step;
 }
 
 }  // namespace adit::nav

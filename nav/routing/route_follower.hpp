@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <limits>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
-#include "nav/recovery/progress_checker.hpp"
+#include "nav/recovery/recovery.hpp"
 #include "nav/routing/route_planner.hpp"
 
 namespace adit::nav {
@@ -16,38 +17,54 @@ struct RouteFollowerParams {
   double gain{0.5};         ///< Required gain of a new route, m, [0, 10].
   double ahead{4.0};        ///< Distance along the route to the local planner's target, m, [1, 10].
   double least_ahead{1.2};  ///< Minimum of that distance, except at the goal, m, [0.3, 5].
-  bool passages{true};      ///< Reports narrow passages, for planners that line up before them.
-  double proof{2.0};        ///< A goal is unreachable after failing for this long, s, [0, 10].
-  double blocked{1.0};  ///< A route is blocked after the local planner was blocked for this long, s, [0, 30].
-  /// After the first failure at a passage: time for another attempt before the passage counts as blocked, s,
-  /// [0, 30].
-  double retry{3.0};
+  /// The same round one corner with room beside the route: the local planner drives a wide curve, m, [1, 10].
+  double sweeping_ahead{3.0};
+  bool passages{true};        ///< Reports narrow passages, for planners that line up before them.
+  double proof{2.0};          ///< A goal is unreachable after failing for this long, s, [0, 10].
+  double cuts{0.3};           ///< A corner is cut by so much, m, (0, 2].
+  double braking_share{0.7};  ///< Fraction of the platform's acceleration used for planned braking, (0, 1].
+  double passing{1.0};  ///< Length in which a robot that passes its goal could stop behind it, m, [0, 5].
+};
+
+/// Where a robot is, and where it is to go. Frame of the map, m.
+struct RouteRequest {
+  Eigen::Vector3d place{0, 0, 0};
+  Eigen::Vector3d goal{0, 0, 0};  ///< z NaN: the floor of `place`.
+  /// Number of the goal: one of the same number that lies elsewhere has moved with the map.
+  std::uint64_t goal_id{};
+  bool pass{};                               ///< More goals follow: the robot need not stop at this one.
+  std::optional<Recovery::Replan> replan{};  ///< The way ahead is blocked: another route is looked for.
+  bool free{};                               ///< What was marked as blocked is free again.
+  double stamp_s{};
 };
 
 /// The local goal of a robot that follows a route.
 struct RouteStep {
   /// State of the route.
   enum class State : std::uint8_t {
-    straight,     ///< No route yet: heads straight for the goal.
-    along,        ///< Heads for `target`, a point of the route.
-    unreachable,  ///< Proven unreachable.
-    blocked,      ///< No route leads around the places that were found blocked.
+    none,           ///< No route is known yet: the robot waits.
+    start_blocked,  ///< No passable ground is known around the robot.
+    along,          ///< Heads for `target`, a point of the route.
+    blocked,        ///< No route leads around the places that were found blocked.
+    unreachable,    ///< Proven unreachable, or too far to be searched.
   };
   /// Tolerance of a target that is not the goal, m.
   static constexpr double kTolerance = 0.08;
   static constexpr std::size_t kMaxAhead = 32;
 
-  State state{State::straight};
+  State state{State::none};
+  std::uint32_t route{0};                  ///< Number of the route; 0: there is none.
   Eigen::Vector3d target{0, 0, 0};         ///< m
   bool last{true};                         ///< `target` is the goal.
+  double end_speed{0};                     ///< Speed at `target` that the rest of the route permits, m/s.
   Standing goal{Standing::standable};      ///< Of the goal itself: `unseen` while its ground is unknown.
   std::optional<NarrowPassage> passage{};  ///< The next passage on the route to `target`.
   /// The first corners of the rest of the route, from the robot on, at most kMaxAhead; empty without a route.
   std::vector<Eigen::Vector3d> ahead{};
   std::uint32_t unknown_ahead{};  ///< Bit i: the leg from corner i leads through unknown space.
   std::size_t corners{};          ///< Number of all corners of the rest of the route.
-  bool stuck{false};              ///< No progress along the route for a long time: see ProgressChecker.
   double length{0};               ///< Length of the rest of the route, m; 0 without a route.
+  bool replanned{};               ///< Answers a request to look for another route.
 };
 
 /// Follows a route with hysteresis: replaces the current route only when a new one is clearly better or the
@@ -55,38 +72,42 @@ struct RouteStep {
 class RouteFollower {
  public:
   explicit RouteFollower(const RouteFollowerParams& params = {}) : params_(params) {}
-  /// Uses the default parameters for the platform's planner.
-  explicit RouteFollower(const Platform& platform) { params_.passages = platform.planner != "vfh"; }
+  /// Uses the default parameters for the platform's planner, and its limits for the speed at targets.
+  explicit RouteFollower(const Platform& platform)
+      : max_speed_(platform.max_speed),
+        max_turn_(platform.max_turn),
+        max_acceleration_(platform.max_acceleration) {
+    params_.passages = platform.planner != "vfh";
+    // On stairs a route leads round what only may be a step: a wide curve would lead across it.
+    if (platform.stairs) params_.sweeping_ahead = params_.least_ahead;
+  }
 
-  /// Computes the next local goal after a scan, from `place` to `goal` (z NaN: the floor of `place`).
-  /// `blocked`: the local planner found no path to the previous local goal.
-  RouteStep step(RoutePlanner& planner, const Eigen::Vector3d& place, const Eigen::Vector3d& goal,
-                 bool blocked, double stamp_s);
+  /// Computes the next local goal after a scan.
+  RouteStep step(RoutePlanner& planner, const RouteRequest& request);
   /// The rest of the route, from the place of the last step().
   const Route& route() const { return route_; }
-  void clear() { *this = RouteFollower(params_); }
+  void clear();
 
  private:
   void advance(RoutePlanner& planner, const Eigen::Vector3d& place);
-  void watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked, double stamp_s);
+  void look_around(RoutePlanner& planner, const RouteRequest& request);
   double cost_to(RoutePlanner& planner, double length) const;
   RouteStep along(RoutePlanner& planner, const Eigen::Vector3d& place);
+  double least_ahead(RoutePlanner& planner) const;
+  double end_speed(const RouteStep& step, const Eigen::Vector3d& place, bool pass) const;
+  void add_ahead(RouteStep& step) const;
   bool leads_through(const NarrowPassage& passage, const Eigen::Vector3d& place) const;
   void watch_passage(RoutePlanner& planner, const Eigen::Vector3d& place);
-  bool has_failed(const Eigen::Vector3d& passage) const;
+  void take(Route route, bool same);
 
   RouteFollowerParams params_{};
+  double max_speed_{0}, max_turn_{0}, max_acceleration_{0};
   Route route_{};
-  ProgressChecker progress_{};
-  std::optional<Eigen::Vector3d> goal_{};
-  std::optional<double> blocked_since_{};
+  std::uint32_t number_{0};  ///< Of the route; each other one has a greater number.
+  std::optional<std::uint64_t> goal_id_{};
+  Eigen::Vector3d goal_{0, 0, 0};
   std::optional<double> unreachable_since_{};
   std::optional<double> looked_{};
-  // The passage that the robot approaches and has not entered.
-  std::optional<Eigen::Vector3d> approached_passage_{};
-  std::optional<Eigen::Vector3d> failed_passage_{};  // The passage at which an attempt has failed.
-  // Being blocked does not count until then, s.
-  double retry_until_{-std::numeric_limits<double>::infinity()};
   std::optional<NarrowPassage> passage_{};  // The passage that the robot approaches or crosses.
   bool frozen_{false};                      // passage_ was seen from near and is fixed.
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -49,6 +50,8 @@ class RoutePlanner {
   /// Marks a place as blocked regardless of the scans, for RouteParams::block_time.
   void block(const Eigen::Vector3d& place, double stamp_s);
   bool has_blocked_places() const;
+  /// Ends all blocks; a place that is blocked again is so for longer.
+  void unblock() { map_.expire(std::numeric_limits<double>::infinity()); }
   /// Sets the areas that no route leaves or enters, in the frame of the poses.
   void set_areas(const AreaSet& areas) { map_.set_areas(areas); }
   /// The first passage on the first `ahead` metres of a route that is narrower than narrow_width().

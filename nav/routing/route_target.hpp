@@ -7,11 +7,13 @@
 
 namespace adit::nav {
 
-/// The local planner's target for a step of a route follower. Frame: that of the route.
+/// The local planner's target for a step of a route follower; none without a route. Frame: that of the route.
 inline Target target_of(const RouteStep& step) {
-  if (step.state == RouteStep::State::unreachable) return {};
+  if (step.state != RouteStep::State::along) return {};
   Target target = Target::to(step.target.head<2>());
-  target.on_route = step.state == RouteStep::State::along;
+  target.route = step.route;
+  target.last = step.last;
+  target.end_speed = step.end_speed;
   if (!step.last) target.tolerance = RouteStep::kTolerance;
   if (step.passage)
     target.passage = {step.passage->middle.x(), step.passage->middle.y(),

@@ -2,7 +2,9 @@
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <variant>
 
 #include "core/geometry/pose.hpp"
@@ -31,6 +33,14 @@ struct Guidance {
 /// A place to drive to: map frame, m; z NaN: the floor that the robot is on.
 struct GoTo {
   Eigen::Vector3d goal{0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};
+  /// Number of the goal, of its mode: a place of the same number is the same goal, although it lies elsewhere
+  /// now. 0: each place is another goal.
+  std::uint32_t id{};
+  /// Heading in which the robot is to stand there, rad, if it can turn on the spot.
+  std::optional<double> yaw{};
+  double tolerance{};  ///< Of the place, m; 0: the planner's.
+  double max_speed{};  ///< Limit, m/s; 0: the platform's.
+  bool pass{};         ///< More places follow: the robot need not stop at this one.
   /// A longer route is none: the place counts as unreachable while there is no shorter one, m.
   double max_route{std::numeric_limits<double>::infinity()};
   /// The place lies farther along the same path as the one before: until its route is known, the robot heads
@@ -39,7 +49,9 @@ struct GoTo {
   bool operator==(const GoTo& other) const {
     const bool same_floor =
         goal.z() == other.goal.z() || (std::isnan(goal.z()) && std::isnan(other.goal.z()));
-    return goal.head<2>() == other.goal.head<2>() && same_floor && max_route == other.max_route;
+    return goal.head<2>() == other.goal.head<2>() && same_floor && max_route == other.max_route &&
+           yaw == other.yaw && tolerance == other.tolerance && max_speed == other.max_speed &&
+           pass == other.pass;
   }
 };
 
@@ -52,7 +64,10 @@ struct Progress {
   bool goal_seen{true};  ///< The ground at the goal is known.
   /// Why it is unreachable, where that is known.
   Reason reason{Reason::none};
-  bool stuck{};  ///< No progress along the route for a long time.
+  bool stuck{};        ///< No progress along the route for a long time.
+  bool waits{};        ///< With `blocked`: its operator should know by now.
+  bool gave_up{};      ///< The robot tried everything: see nav::Recovery.
+  nav::Cause cause{};  ///< With `blocked`: what is in the way.
   nav::Side
       in_collision{};  ///< With `blocked`: what keeps the robot there touches it, or nearly, on this side.
   bool operator==(const Progress&) const = default;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "nav/routing/route_target.hpp"
 
@@ -15,6 +16,8 @@ constexpr double kTurningSpeed = 0.05;    // Speed for a stick that only turns, 
 constexpr Duration kAnswerDeadline = 2s;  // Of planner and router; one that hangs is replaced earlier.
 constexpr double kBorderRange = 5.0;      // Of the areas' border that planner and monitor see, m.
 constexpr double kGoalMoved = 0.05;       // Shift of the goal by a correction of the map, m.
+constexpr double kTolerance = 0.25;       // Of the planners, m.
+constexpr double kTurned = 0.15;          // Greatest error of a heading that was asked for, rad.
 
 }  // namespace
 
@@ -38,19 +41,26 @@ Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const
       fence_(params_.platform) {}
 
 void Navigation::accept(MuxKey, const Motion& motion, Time now) {
-  if (motion == motion_) return;
+  if (motion == motion_) {
+    motion_ = motion;  // The number of a goal may differ.
+    return;
+  }
   const bool other_kind = motion.index() != motion_.index();
   const auto* go = std::get_if<GoTo>(&motion);
-  if (go) ++goal_generation_;
-  const bool continues =
-      go && go->continues && !other_kind && step_on(now) && target().kind == nav::Target::Kind::goal;
-  if (continues)
-    continued_ = now;
-  else
-    step_.reset();
-  blocked_ = false;
+  const auto* before = std::get_if<GoTo>(&motion_);
+  const bool same_goal = go && before && go->id != 0 && go->id == before->id;
+  if (!same_goal) {
+    if (go) ++goal_generation_;
+    if (go && before && go->continues && step_on(now))
+      continued_ = now;
+    else
+      step_.reset();
+    last_target_ = {};
+    replan_.reset();
+    free_ = false;
+    held_.clear();
+  }
   motion_ = motion;
-  held_.clear();
   update_fence(now);
   if (other_kind) {
     has_plan_ = false;
@@ -64,8 +74,10 @@ void Navigation::accept(MuxKey, const Motion& motion, Time now) {
 
 void Navigation::clear() {
   controller_->stop_now();
-  has_plan_ = blocked_ = false;
+  has_plan_ = false;
   step_.reset();
+  recovery_.clear();
+  last_target_ = {};
   held_.clear();
   monitor_.clear();
   ++scan_epoch_;
@@ -179,18 +191,30 @@ bool Navigation::at_height() const {
   return std::fabs(go->goal.z() - frames_.height()) < kThere;
 }
 
-bool Navigation::is_goal(const Eigen::Vector2d& goal) const {
+double Navigation::distance_to_goal(const Pose2& pose) const {
   const auto* go = std::get_if<GoTo>(&motion_);
-  return go && (frames_.to_odom(Eigen::Vector2d(go->goal.head<2>())) - goal).norm() < kGoalMoved;
+  if (!go) return std::numeric_limits<double>::infinity();
+  return (frames_.to_odom(Eigen::Vector2d(go->goal.head<2>())) - pose.position()).norm();
+}
+
+bool Navigation::is_current(std::uint64_t generation, Time now) const {
+  const auto* go = std::get_if<GoTo>(&motion_);
+  if (generation == goal_generation_) return true;
+  return go && go->continues && now - continued_ < params_.passed_age;
 }
 
 nav::Target Navigation::target() const {
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
     const auto* step = step_on(now());
-    // With a router, the robot waits for its route.
-    if (!step && router_) return {};
-    if (!step) return nav::Target::to(frames_.to_odom(Eigen::Vector2d(go->goal.head<2>())));
-    return nav::target_of(*step);
+    nav::Target target{};
+    if (!router_)
+      target = nav::Target::to(frames_.to_odom(Eigen::Vector2d(go->goal.head<2>())));
+    else if (step)  // Otherwise the robot waits for its route.
+      target = nav::target_of(*step);
+    if (target.kind == nav::Target::Kind::none && recovery_.gave_up()) target = last_target_;
+    target.speed = go->max_speed;
+    if (target.last) target.tolerance = go->tolerance;
+    return recovery_.target(target);
   }
   const auto* guidance = std::get_if<Guidance>(&motion_);
   if (!guidance || guidance->stick.zero()) return {};
@@ -216,6 +240,9 @@ Twist2 Navigation::limited(const Twist2& wanted) const {
 void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now, std::vector<TeamRobot> team) {
   scanned_ = received;
   detect(scan, now);
+  peers_.clear();
+  for (const TeamRobot& robot : team)
+    peers_.emplace_back(robot.pose.x, robot.pose.y, std::hypot(robot.length, robot.width) / 2);
   if (planning_)
     waiting_ = scan;
   else
@@ -272,12 +299,7 @@ const nav::RouteStep* Navigation::followed_route(Time now) const {
 
 const nav::RouteStep* Navigation::step_on(Time now) const {
   if (!step_ || now - step_made_ >= params_.step_age) return nullptr;
-  // The goal has moved in the odometry frame since.
-  const auto* go = std::get_if<GoTo>(&motion_);
-  const bool passes = go && go->continues && now - continued_ < params_.passed_age;
-  const bool outdated =
-      step_->last && step_->state != nav::RouteStep::State::unreachable && !passes && !is_goal(step_goal_);
-  return outdated ? nullptr : &*step_;
+  return is_current(step_generation_, now) ? &*step_ : nullptr;
 }
 
 void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now, std::vector<TeamRobot> team) {
@@ -288,7 +310,9 @@ void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now, st
   job->place = frames_.T_odom_base().position;
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
     job->goal = frames_.to_odom(go->goal);
-    job->blocked = blocked_;
+    job->pass = go->pass;
+    job->replan = std::exchange(replan_, std::nullopt);
+    job->free = std::exchange(free_, false);
   }
   job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
@@ -305,35 +329,25 @@ void Navigation::routed(const RouteJob& job, const Result<nav::RouteStep>& step)
   mapped_ = job.made;
   const auto* go = std::get_if<GoTo>(&motion_);
   if (!job.goal || job.generation != goal_generation_ || !go) return;
-  const bool too_long = step->length > go->max_route;
-  const bool unreachable = too_long || step->state == nav::RouteStep::State::unreachable;
-  if (unreachable && !is_goal(job.goal->head<2>())) return;
   step_ = *step;
-  if (too_long) step_->state = nav::RouteStep::State::unreachable;
-  step_goal_ = job.goal->head<2>();
+  if (step->length > go->max_route) step_->state = nav::RouteStep::State::unreachable;
+  if (step_->state != nav::RouteStep::State::along) step_->route = 0;
+  step_generation_ = job.generation;
   step_made_ = job.made;
-  if (!unreachable) return;
-  has_plan_ = false;  // The robot stops: no direction leads to the goal.
-  outputs_.progress({.blocked = true,
-                     .unreachable = true,
-                     .goal_seen = step->goal != nav::Standing::unseen,
-                     .reason = nav::is_refused(step->goal) ? reason_of(step->goal) : Reason::none});
+  if (step->replanned) recovery_.replanned();
 }
 
 void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   auto job = std::make_shared<PlanJob>();
   job->scan = std::move(scan);
   job->target = target();
-  // The router, if there is one, first has half of that time to find another route.
-  job->target.held = held_.held(seconds(now.time_since_epoch()), 2 * seconds(params_.held_after));
-  const auto* step = step_on(now);
-  job->last = !step || step->last;
-  if (const auto* go = std::get_if<GoTo>(&motion_))
-    job->goal = step ? step_goal_ : frames_.to_odom(Eigen::Vector2d(go->goal.head<2>()));
+  if (job->target.kind == nav::Target::Kind::goal && std::holds_alternative<GoTo>(motion_))
+    last_target_ = job->target;
+  job->peers = peers_;
   job->pose = frames_.T_odom_base().planar();
   if (is_bound() && !fence_.empty()) job->border = fence_.border(frames_, kBorderRange);
   job->odom_epoch = frames_.odom_epoch();
-  job->generation = goal_generation_;
+  job->generation = router_ && step_on(now) ? step_generation_ : goal_generation_;
   job->made = now;
   planning_ = true;
   waiting_.reset();
@@ -349,24 +363,95 @@ void Navigation::planned(const PlanJob& job, const Result<std::shared_ptr<const 
 
 void Navigation::take(const PlanJob& job, const std::shared_ptr<const PlanAnswer>& answer) {
   obstacles_ = {answer, &answer->obstacles};
-  const bool for_goal = job.target.kind == nav::Target::Kind::goal && std::holds_alternative<GoTo>(motion_);
   const bool for_stick =
       job.target.kind == nav::Target::Kind::direction && std::holds_alternative<Guidance>(motion_);
-  if ((for_goal && job.generation == goal_generation_) || for_stick) {
-    controller_->set_plan(answer->plan);
-    has_plan_ = true;
-    plan_made_ = job.made;
-    const bool held = held_.held(seconds(now().time_since_epoch()), seconds(params_.held_after));
-    if (for_goal) {
-      blocked_ = answer->plan.blocked || held;
-      const auto* route = step_on(now());
-      outputs_.progress({.arrived = answer->plan.arrived && job.last && is_goal(job.goal) && at_height(),
-                         .blocked = blocked_,
-                         .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
-                         .stuck = route && route->stuck,
-                         .in_collision = answer->plan.side});
-    }
+  if (for_stick)
+    follow(answer->plan, job.made);
+  else if (job.target.kind != nav::Target::Kind::direction && std::holds_alternative<GoTo>(motion_) &&
+           is_current(job.generation, now()))
+    go_on(job, answer->plan);
+}
+
+void Navigation::follow(const nav::Plan& plan, Time made) {
+  controller_->set_plan(plan);
+  has_plan_ = true;
+  plan_made_ = made;
+}
+
+void Navigation::recover(const PlanJob& job, const nav::Plan& plan, bool held) {
+  const auto* step = step_on(now());
+  nav::RecoveryInput in{};
+  in.goal = goal_generation_;
+  in.route = router_ ? step->route : 1;
+  in.left = router_ ? step->length : distance_to_goal(job.pose);
+  in.unreachable = router_ && step->state == nav::RouteStep::State::unreachable;
+  in.start_blocked = router_ && step->state == nav::RouteStep::State::start_blocked;
+  in.blocked = plan.blocked;
+  in.nudge = plan.nudge;
+  in.held = held;
+  in.cause = plan.cause;
+  in.side = plan.side;
+  in.ends_at_goal = plan.ends_at_goal;
+  in.at = job.pose.position();
+  in.stamp_s = seconds(job.made.time_since_epoch());
+  const nav::RecoveryState before = recovery_.state();
+  if (const auto state = recovery_.look(in); state != before && log().on(LogLevel::info)) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%s after %s at %.2f %.2f, odometry", nav::name(state).data(),
+                  nav::name(before).data(), in.at.x(), in.at.y());
+    log().info(text);
   }
+  if (const auto replan = recovery_.take_replan()) {
+    // Without a router there is no other way.
+    if (router_)
+      replan_ = replan;
+    else
+      recovery_.replanned();
+  }
+  free_ = free_ || recovery_.take_free();
+}
+
+void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
+  using Kind = nav::Target::Kind;
+  using State = nav::RecoveryState;
+  const auto* step = step_on(now());
+  if (router_ && !step) return;
+  const auto fits = [&] {
+    const nav::Target wanted = recovery_.target({.kind = Kind::goal});
+    return job.target.kind == wanted.kind && job.target.nudges == wanted.nudges;
+  };
+  // A plan for the state before says nothing about this one.
+  const bool answers = fits() || job.target.kind == Kind::none;
+  const bool held = held_.held(seconds(now().time_since_epoch()), seconds(params_.held_after));
+  if (answers) recover(job, plan, held);
+  const bool drives = fits() && !recovery_.gave_up() && recovery_.state() != State::replan &&
+                      (!router_ || step->route != 0 || job.target.kind == Kind::leave);
+  follow(drives ? plan : nav::Plan{}, job.made);
+
+  const auto& go = std::get<GoTo>(motion_);
+  const double tolerance = go.tolerance > 0 ? go.tolerance : kTolerance;
+  bool arrived = plan.arrived && drives && job.target.last && job.generation == goal_generation_ &&
+                 distance_to_goal(job.pose) < tolerance + kGoalMoved && at_height();
+  if (arrived && go.yaw && params_.platform.turns_on_spot()) {
+    nav::Plan turn{.stamp_s = plan.stamp_s, .turn_first = true, .pose_count = 2};
+    turn.poses[0] = turn.poses[1] = frames_.T_map_odom().inverse() * Pose2{go.goal.x(), go.goal.y(), *go.yaw};
+    arrived = std::fabs(wrap_angle(turn.poses[0].yaw - job.pose.yaw)) < kTurned;
+    if (!arrived) follow(turn, job.made);
+  }
+  const bool unreachable =
+      recovery_.gave_up() && router_ && step->route == 0 && recovery_.reason() == Reason::goal_unreachable;
+  const bool tries = recovery_.state() != State::drive;
+  outputs_.progress(
+      {.arrived = arrived,
+       .blocked = plan.blocked || held || recovery_.gave_up(),
+       .unreachable = unreachable,
+       .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
+       .reason = unreachable && nav::is_refused(step->goal) ? reason_of(step->goal) : Reason::none,
+       .stuck = recovery_.stuck(),
+       .waits = recovery_.reason() != Reason::none,
+       .gave_up = recovery_.gave_up(),
+       .cause = tries ? recovery_.cause() : plan.cause,
+       .in_collision = recovery_.gave_up() ? recovery_.side() : nav::Side::none});
 }
 
 bool Navigation::goal_free(const Eigen::Vector2d& place) const {

@@ -12,6 +12,7 @@
 #include "nav/control/controller.hpp"
 #include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
+#include "nav/recovery/recovery.hpp"
 #include "robot_agent/motion/fence.hpp"
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/motion.hpp"
@@ -89,9 +90,10 @@ class Navigation : public Component, public NavigationInput {
   bool goal_free(const Eigen::Vector2d& place) const;
 
  private:
-  /// Whether `goal` (odometry frame, m) is still the position of the goal requested last, which a correction
-  /// of the map moves.
-  bool is_goal(const Eigen::Vector2d& goal) const;
+  /// Distance from `pose` to the goal requested last, m; that goal moves with a correction of the map.
+  double distance_to_goal(const Pose2& pose) const;
+  /// Whether `step_` leads to the goal requested last, or to the one before that it continues.
+  bool is_current(std::uint64_t generation, Time now) const;
   nav::Target target() const;
   /// The next step of the route; null if there is none.
   const nav::RouteStep* step_on(Time now) const;
@@ -116,6 +118,10 @@ class Navigation : public Component, public NavigationInput {
   void plan(std::shared_ptr<Scan> scan, Time now);
   void planned(const PlanJob& job, const Result<std::shared_ptr<const PlanAnswer>>& answer);
   void take(const PlanJob& job, const std::shared_ptr<const PlanAnswer>& answer);
+  /// Follows a plan towards the goal, or what the recovery asks for instead, and reports.
+  void go_on(const PlanJob& job, const nav::Plan& plan);
+  void recover(const PlanJob& job, const nav::Plan& plan, bool held);
+  void follow(const nav::Plan& plan, Time made);
 
   NavigationParams params_;
   const Frames& frames_;
@@ -143,11 +149,15 @@ class Navigation : public Component, public NavigationInput {
   bool planning_{};                       // A call to the planner is pending.
   std::shared_ptr<Scan> waiting_{};       // The newest scan that arrived while planning.
   bool routing_{};                        // A call to the router is pending.
-  std::optional<nav::RouteStep> step_{};  // Of the goal requested last.
-  Eigen::Vector2d step_goal_{0, 0};       // Position of that goal then, odometry frame, m.
+  std::optional<nav::RouteStep> step_{};  // Of the goal of `step_generation_`.
+  std::uint64_t step_generation_{};
   Time step_made_{};
-  Time continued_{};  // When the goal that continues `step_goal_` was requested.
-  bool blocked_{};    // The last plan towards the goal was blocked.
+  Time continued_{};  // When the goal that continues that one was requested.
+  nav::Recovery recovery_{};
+  nav::Target last_target_{};  // The last one on a route, by which the robot sees that the way is free again.
+  std::optional<nav::Recovery::Replan> replan_{};  // To be sent to the router with the next scan.
+  bool free_{};                                    // The same.
+  std::vector<Eigen::Vector3f> peers_{};  // Centres and radii of the other robots, odometry frame, m.
   std::optional<Time> scanned_{};
   std::optional<Time> mapped_{};  // When the scan was received that the router answered last.
   std::shared_ptr<const std::vector<Eigen::Vector2f>> obstacles_{};  // Odometry frame, m.

@@ -66,7 +66,7 @@ void Planner::plan(const std::shared_ptr<const PlanJob>& job,
         local_navigation.add_scan(job->scan->measured(), job->scan->body, stamp);
         auto answer = std::make_shared<PlanAnswer>();
         if (job->target.kind != nav::Target::Kind::none)
-          answer->plan = local_navigation.plan(job->target, job->pose, stamp, job->border);
+          answer->plan = local_navigation.plan(job->target, job->pose, stamp, job->border, job->peers);
         local_navigation.blocked(answer->obstacles);
         return answer;
       },

@@ -36,14 +36,13 @@ struct Scan {
 /// The input of one planning cycle.
 struct PlanJob {
   std::shared_ptr<Scan> scan{};
-  nav::Target target{};        ///< Kind none: the scan enters the map, and nothing is planned.
-  bool last{true};             ///< `target` is the goal itself, not an intermediate point of the route.
-  Eigen::Vector2d goal{0, 0};  ///< Position of the goal to which `target` leads, odometry frame, m.
-  Pose2 pose{};                ///< Odometry frame.
+  nav::Target target{};  ///< Kind none: the scan enters the map, and nothing is planned.
+  Pose2 pose{};          ///< Odometry frame.
   /// Points along the border of forbidden ground, odometry frame, m.
   std::vector<Eigen::Vector2f> border{};
-  std::uint32_t odom_epoch{};  ///< Epoch of that frame; maps of another epoch are discarded.
-  std::uint64_t generation{};  ///< Generation of the goal, for the caller.
+  std::vector<Eigen::Vector3f> peers{};  ///< Centres and radii of the other robots, odometry frame, m.
+  std::uint32_t odom_epoch{};            ///< Epoch of that frame; maps of another epoch are discarded.
+  std::uint64_t generation{};            ///< Generation of the goal to which `target` leads, for the caller.
   Time made{};
 };
 /// The result of one planning cycle.

@@ -33,8 +33,8 @@ struct Router::Maps {
   nav::AreaSet areas{};                   ///< All of the last job.
 
   nav::RouteStep step(const RouteJob& job, double stamp) {
-    nav::RouteStep step = route_follower.step(planner, job.place, *job.goal, job.blocked, stamp);
-    if (step.state == nav::RouteStep::State::along) add_ahead(step);
+    nav::RouteStep step = route_follower.step(
+        planner, {job.place, *job.goal, job.generation, job.pass, job.replan, job.free, stamp});
     step.goal = goals.stand(planner, *job.goal, job.place.z());
     // From afar the map may show what was there a while ago, and a person who passes is no reason to stop.
     const bool near = (*job.goal - job.place).head<2>().norm() < kJudged;
@@ -46,19 +46,6 @@ struct Router::Maps {
     }
     if (step.goal == nav::Standing::forbidden) step.state = nav::RouteStep::State::unreachable;
     return step;
-  }
-
-  /// Adds the first corners of the rest of the route.
-  void add_ahead(nav::RouteStep& step) const {
-    const nav::Route& route = route_follower.route();
-    step.corners = route.points.size();
-    const std::size_t count = std::min(step.corners, nav::RouteStep::kMaxAhead);
-    step.ahead.assign(route.points.begin(), route.points.begin() + static_cast<std::ptrdiff_t>(count));
-    // The follower drops the beginning of a route before it measures the rest again.
-    if (route.unknown.size() + 1 < step.corners) return;
-    const std::size_t dropped = route.unknown.size() + 1 - step.corners;
-    for (std::size_t leg = 0; leg + 1 < count; ++leg)
-      if (route.unknown[leg + dropped]) step.unknown_ahead |= 1U << leg;
   }
 
   void enter(std::uint32_t epoch, const RouteAreas& now) {

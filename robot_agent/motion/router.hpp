@@ -31,10 +31,12 @@ struct RouteJob {
   std::shared_ptr<const Scan> scan{};
   std::optional<Eigen::Vector3d> goal{};  ///< Unset: the scan enters the map, and no route is requested.
   Eigen::Vector3d place{0, 0, 0};         ///< Position of the body.
-  bool blocked{};                         ///< The local planner found no path along the previous step.
-  std::vector<TeamRobot> team{};          ///< The other robots.
-  std::uint32_t odom_epoch{};             ///< Epoch of that frame; maps of another epoch are discarded.
-  std::uint64_t generation{};             ///< Generation of the goal, for the caller.
+  bool pass{};                            ///< See nav::RouteRequest.
+  std::optional<nav::Recovery::Replan> replan{};
+  bool free{};
+  std::vector<TeamRobot> team{};  ///< The other robots.
+  std::uint32_t odom_epoch{};     ///< Epoch of that frame; maps of another epoch are discarded.
+  std::uint64_t generation{};     ///< Number of the goal.
   RouteAreas areas{};
   Time made{};
 };

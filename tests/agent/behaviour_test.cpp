@@ -388,10 +388,11 @@ TEST_F(BehaviourTest, IdleAndBlockedAreReportedOnce) {
   EXPECT_THAT(codes(), testing::ElementsAre("idle"));
   notices.clear();
   ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
-  behaviour.set_progress({false, true});
+  behaviour.set_progress({.blocked = true});
   run(4s);
   EXPECT_TRUE(notices.empty());
   EXPECT_EQ(behaviour.view().goal_state, GoalState::blocked);
+  behaviour.set_progress({.blocked = true, .waits = true});
   run(10s);
   EXPECT_THAT(codes(), testing::ElementsAre("blocked"));
 }

@@ -18,14 +18,24 @@ class ScriptedRouter final : public Component {
     offer(services.step, [this](const auto& job, const Reply<nav::RouteStep>& reply) {
       if (!answers) return;
       last = job;
-      reply(job->goal && answer ? *answer
-                                : nav::RouteStep{.target = job->goal.value_or(Eigen::Vector3d{0, 0, 0})});
+      if (job->replan) ++replans;
+      nav::RouteStep step =
+          job->goal && answer ? *answer : along(job->goal.value_or(Eigen::Vector3d{0, 0, 0}), true, left);
+      step.replanned = job->replan.has_value();
+      reply(step);
     });
     return {};
   }
 
+  static nav::RouteStep along(const Eigen::Vector3d& target, bool last, double length = 5.0) {
+    return {
+        .state = nav::RouteStep::State::along, .route = 1, .target = target, .last = last, .length = length};
+  }
+
   RouteServices services{};
   bool answers{true};
+  double left{5.0};                        ///< Length of the route, m.
+  int replans{0};                          ///< Times that another route was asked for.
   std::optional<nav::RouteStep> answer{};  ///< Empty: straight to the goal.
   std::shared_ptr<const RouteJob> last{};
 };
@@ -119,13 +129,13 @@ TEST_F(NavigationTest, ARobotHeldByTheBrakingCheckReportsBlocked) {
   for (int i = 0; i < 10; ++i) cycle(planned, actual);
   EXPECT_TRUE(progress.blocked);
 
-  for (int i = 0; i < 10; ++i) cycle(planned, planned);
+  for (int i = 0; i < 100; ++i) cycle(planned, planned);
   EXPECT_FALSE(progress.blocked) << "it goes on";
   EXPECT_FALSE(velocity.zero());
 }
 
 TEST_F(NavigationTest, AnotherGoalBeginsUnheld) {
-  for (int i = 0; i < 25; ++i) cycle(planned, actual);
+  for (int i = 0; i < 25 && !progress.blocked; ++i) cycle(planned, actual);
   ASSERT_TRUE(progress.blocked);
   go({6, 0.5});
   for (int i = 0; i < 2; ++i) cycle(planned, actual);  // The first one asks for the route.
@@ -133,15 +143,15 @@ TEST_F(NavigationTest, AnotherGoalBeginsUnheld) {
 }
 
 TEST_F(NavigationTest, FollowsTheRouteNotTheGoal) {
-  router.answer = nav::RouteStep{nav::RouteStep::State::along, {-3, 3, 0}, false};
+  router.answer = ScriptedRouter::along({-3, 3, 0}, false);
   go({6, 0});
   for (int i = 0; i < 10; ++i) cycle({}, {});
   EXPECT_GT(velocity.wz, 0.1) << "the route leads back and to the left";
 }
 
 TEST_F(NavigationTest, APlaceOnTheWayIsNoArrival) {
-  router.answer = nav::RouteStep{nav::RouteStep::State::along, {0.05, 0, 0}, false};
-  go({6, 0});
+  router.answer = ScriptedRouter::along({0.05, 0, 0}, false);
+  go({0.05, 0});
   for (int i = 0; i < 5; ++i) cycle({}, {});
   EXPECT_FALSE(progress.arrived);
   router.answer->last = true;
@@ -152,8 +162,8 @@ TEST_F(NavigationTest, APlaceOnTheWayIsNoArrival) {
 TEST_F(NavigationTest, StopsBeforeAnUnreachableGoalAndReportsIt) {
   for (int i = 0; i < 10; ++i) cycle({}, {});
   ASSERT_GT(velocity.vx, 0.3);
-  router.answer = nav::RouteStep{nav::RouteStep::State::unreachable, {6, 0, 0}, true};
-  for (int i = 0; i < 3; ++i) cycle({}, {});
+  router.answer = nav::RouteStep{.state = nav::RouteStep::State::unreachable};
+  for (int i = 0; i < 8; ++i) cycle({}, {});
   EXPECT_TRUE(velocity.zero());
   EXPECT_TRUE(progress.blocked && progress.unreachable);
   router.answer.reset();
@@ -174,9 +184,8 @@ TEST_F(NavigationTest, WaitsForARouteUntilTheRouterAnswers) {
 }
 
 TEST_F(NavigationTest, ARouteThatIsTooLongIsNotDriven) {
-  router.answer = nav::RouteStep{
-      .state = nav::RouteStep::State::along, .target = {3, -2, 0}, .last = false, .length = 9.0};
-  goal_writer.write(GoTo{{6, 0, 0}, 8.0}, strand->now());
+  router.answer = ScriptedRouter::along({3, -2, 0}, false, 9.0);
+  goal_writer.write(GoTo{.goal = {6, 0, 0}, .max_route = 8.0}, strand->now());
   for (int i = 0; i < 30; ++i) cycle({}, {});
   EXPECT_TRUE(velocity.zero());
   EXPECT_TRUE(progress.unreachable);
@@ -312,11 +321,43 @@ TEST_F(NavigationDetects, AScanOfTheOldFrameThatIsLookedAtDoesNotCount) {
   EXPECT_GT(speed(), 0.2);
 }
 
-TEST_F(NavigationTest, ReportsABlockedRouteToTheRouter) {
-  for (int i = 0; i < 25; ++i) cycle(planned, actual);
-  ASSERT_TRUE(progress.blocked);
-  EXPECT_TRUE(router.last->blocked);
+TEST_F(NavigationTest, AfterNudgeAndWayBackTheRouterIsAskedForOtherRoutesAndThenItGivesUp) {
+  for (int i = 0; i < 150; ++i) cycle(planned, actual);
+  EXPECT_EQ(router.replans, nav::RecoveryParams{}.replans);
+  EXPECT_TRUE(progress.gave_up);
   EXPECT_EQ(router.last->goal->head<2>(), Eigen::Vector2d(6, 0));
+}
+
+TEST_F(NavigationTest, AGoalThatMovesWithTheMapIsTheSameGoal) {
+  goal_writer.write(GoTo{.goal = {6, 0, 0}, .id = 7}, strand->now());
+  for (int i = 0; i < 5; ++i) cycle({}, {});
+  const std::uint64_t goal = router.last->generation;
+  goal_writer.write(GoTo{.goal = {6, 0.5, 0}, .id = 7}, strand->now());
+  for (int i = 0; i < 3; ++i) cycle({}, {});
+  EXPECT_EQ(router.last->generation, goal);
+  EXPECT_EQ(router.last->goal->head<2>(), Eigen::Vector2d(6, 0.5));
+  EXPECT_GT(velocity.vx, 0.3);
+}
+
+TEST_F(NavigationTest, TurnsToTheHeadingOfItsGoalBeforeItArrives) {
+  router.answer = ScriptedRouter::along({0.05, 0, 0}, true, 0.05);
+  goal_writer.write(GoTo{.goal = {0.05, 0, 0}, .id = 8, .yaw = 1.0}, strand->now());
+  for (int i = 0; i < 5; ++i) cycle({}, {});
+  EXPECT_FALSE(progress.arrived);
+  EXPECT_GT(velocity.wz, 0.1);
+  for (int i = 0; i < 5; ++i) cycle({0, 0, 0.95}, {0, 0, 0.95});
+  EXPECT_TRUE(progress.arrived);
+}
+
+TEST_F(NavigationTest, ObeysSpeedAndToleranceOfItsGoal) {
+  goal_writer.write(GoTo{.goal = {6, 0, 0}, .id = 9, .max_speed = 0.2}, strand->now());
+  for (int i = 0; i < 20; ++i) cycle({}, {});
+  EXPECT_NEAR(velocity.vx, 0.2, 0.06);
+  goal_writer.write(Stand{}, strand->now());
+  router.answer = ScriptedRouter::along({0.6, 0, 0}, true, 0.6);
+  goal_writer.write(GoTo{.goal = {0.6, 0, 0}, .id = 10, .tolerance = 0.7}, strand->now());
+  for (int i = 0; i < 5 && !progress.arrived; ++i) cycle({}, {});
+  EXPECT_TRUE(progress.arrived);
 }
 
 }  // namespace

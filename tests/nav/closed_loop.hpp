@@ -5,6 +5,7 @@
 #include "nav/control/controller.hpp"
 #include "nav/local_navigation.hpp"
 #include "nav/monitor/held_watch.hpp"
+#include "nav/recovery/recovery.hpp"
 #include "tests/nav/box_world.hpp"
 #include "tests/nav/scanned_monitor.hpp"
 
@@ -31,6 +32,10 @@ struct ClosedLoop {
   double driven{0}, fastest{0}, steepest{0};  ///< In m, m/s, m/s2.
   int blocked_cycles{0}, held_steps{0}, slowed_steps{0};
   HeldWatch held{};
+  Recovery recovery{};
+  std::uint64_t goals{1};  ///< Number of the goal of drive().
+  Eigen::Vector2d driven_to{0, 0};
+  static constexpr double kHeldAfter = 1.5;  ///< Default of the agent, s.
 
   ClosedLoop(const Platform& p, BoxWorld w, const Pose2& start, const std::string& tracks = "ilqr")
       : world(std::move(w)),
@@ -43,15 +48,33 @@ struct ClosedLoop {
 
   Pose2 odometry() const { return {truth.x + bias.x, truth.y + bias.y, truth.yaw}; }
 
-  /// One planner cycle and the five follower steps until the next.
-  void cycle(const Target& target) {
+  /// One cycle towards a goal on a route, or of what the recovery asks for instead. `route`: its number and
+  /// what is left of it; no route: nothing is driven.
+  RecoveryState recovering_cycle(const Target& goal, RecoveryInput in) {
+    const Target target = recovery.target(goal);
+    const bool stands = recovery.gave_up() || recovery.state() == RecoveryState::replan;
+    cycle(target, !stands);
+    in.blocked = last.blocked;
+    in.nudge = last.nudge;
+    in.held = held.held(time, kHeldAfter);
+    in.cause = last.cause;
+    in.side = last.side;
+    in.ends_at_goal = last.ends_at_goal;
+    in.at = odometry().position();
+    in.stamp_s = time;
+    return recovery.look(in);
+  }
+
+  /// One planner cycle and the five follower steps until the next; `follows`: the plan is driven.
+  void cycle(const Target& target, bool follows = true) {
     const Pose2 odom = odometry();
     const auto scan = world.scan(truth, platform.lidar_height, rings, columns, noise, random);
     local_navigation.add_scan(scan, Pose3::level(odom, 0.0), time);
     monitor.look(scan, Pose3::level(odom, 0.0), time);
     last = local_navigation.plan(target, odom, time);
-    blocked_cycles += last.blocked;
-    follower.set_plan(last);
+    blocked_cycles +=
+        last.blocked && (target.kind == Target::Kind::goal || target.kind == Target::Kind::direction);
+    follower.set_plan(follows ? last : Plan{});
     for (int i = 0; i < 5; ++i) {
       constexpr double kDt = 0.02;
       const Twist2 before = follower.command();
@@ -77,7 +100,15 @@ struct ClosedLoop {
   bool drive(const Target& target, double seconds) {
     const double end = time + seconds;
     while (time < end) {
-      cycle(target);
+      if (target.kind != Target::Kind::goal) {
+        cycle(target);
+      } else {
+        if ((target.goal - driven_to).norm() > 0.1) ++goals;
+        driven_to = target.goal;
+        const double left = (target.goal - odometry().position()).norm();
+        recovering_cycle(target, {.goal = goals, .route = 1, .left = left});
+        if (recovery.take_replan()) recovery.replanned();
+      }
       if (last.arrived && follower.command().zero()) return true;
     }
     return false;

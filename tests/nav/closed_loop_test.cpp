@@ -88,7 +88,7 @@ TEST_P(EveryPlatform, GivesUpAGoalThatItCannotComeNearTo) {
   BoxWorld world = corridor(-2, 12);
   ClosedLoop run(GetParam(), world, {0, 0, 0});
   EXPECT_FALSE(run.drive(Target::to({5, 0.95}), 30));
-  EXPECT_TRUE(run.last.blocked);
+  EXPECT_TRUE(run.recovery.gave_up());
   EXPECT_TRUE(run.follower.command().zero());
   EXPECT_GT(run.least_clearance, 0.03);
   const double driven = run.driven;

@@ -44,7 +44,7 @@ Way drive(const Platform& platform, const Points& points, Pose2 pose) {
       seen.push_back({p.x(), p.y(), 1.0f});
     }
     const auto plan = escape.plan(pose, seen);
-    way.side = escape.side();
+    way.side = escape.side_of(seen);
     way.out = way.side == Side::none;
     if (!plan) return way;
     EXPECT_LE(plan->max_speed, 0.1);

@@ -138,29 +138,5 @@ TEST_F(Planner, AStickBackDrivesBackwards) {
   EXPECT_LE(plan.max_speed, 0.5);
 }
 
-TEST_F(Planner, BacksAwayAfterAWhileAndNotForEver) {
-  Cells cells;
-  add_box(cells, 0.5f, 0.6f, -3.0f, 3.0f);  // a wall before it, a wall on both sides
-  add_box(cells, -3.0f, 0.6f, 0.36f, 0.46f);
-  add_box(cells, -3.0f, 0.6f, -0.46f, -0.36f);
-  int retreats = 0, blocked = 0;
-  bool before = false;
-  for (int i = 0; i < 400; ++i) {
-    const Plan plan = planner_.plan(Target::to({5, 0}), {}, seen_from({}, cells), 0.1 * i);
-    if (i < 25) {
-      EXPECT_TRUE(plan.blocked) << i;
-    }
-    // The robot of this test never moves: each retreat lasts until the way back is blocked as well.
-    if (plan.reverse && !before) ++retreats;
-    if (i == 200) add_box(cells, -1.2f, -1.1f, -0.4f, 0.4f), add_box(cells, -0.6f, -0.5f, -0.4f, 0.4f);
-    before = plan.reverse;
-    blocked += plan.blocked;
-  }
-  EXPECT_GE(retreats, 1);
-  EXPECT_LE(retreats, 2);
-  EXPECT_TRUE(planner_.plan(Target::to({5, 0}), {}, seen_from({}, cells), 50).blocked);
-  EXPECT_GT(blocked, 100);
-}
-
 }  // namespace
 }  // namespace adit::nav::test

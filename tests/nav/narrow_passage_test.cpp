@@ -116,11 +116,13 @@ TEST(NarrowPassage, TheKeeperLeadsBehindItOnItsAxis) {
   set_hall(planner, 27, 33);
   RouteFollower route_follower;
   const Eigen::Vector3d goal{8, 1.5, 0};
-  const RouteStep aside = route_follower.step(planner, {4.2, 1.5, 0}, goal, false, 0.0);
+  const RouteStep aside =
+      route_follower.step(planner, {.place = {4.2, 1.5, 0}, .goal = goal, .stamp_s = 0.0});
   ASSERT_TRUE(aside.passage);
   EXPECT_NEAR(aside.target.y(), 3.0, 0.1);
   EXPECT_NEAR(aside.target.x(), 6.0, 0.2) << "behind it, on its axis";
-  const RouteStep behind = route_follower.step(planner, {5.9, 3.0, 0}, goal, false, 2.0);
+  const RouteStep behind =
+      route_follower.step(planner, {.place = {5.9, 3.0, 0}, .goal = goal, .stamp_s = 2.0});
   EXPECT_FALSE(behind.passage);
   EXPECT_LT(behind.target.y(), 2.5) << "and on along the route";
 }
@@ -132,10 +134,12 @@ double middle_seen_again_from(double x) {
   set_hall(planner, 27, 33);
   RouteFollower route_follower;
   const Eigen::Vector3d goal{8, 3.0, 0};
-  route_follower.step(planner, {x, 3.0, 0}, goal, false, 0.0);
+  route_follower.step(planner, {.place = {x, 3.0, 0}, .goal = goal, .stamp_s = 0.0});
   for (const int cell : {50, 51}) planner.set_obstacle(middle(cell, 32), 2.0);
   planner.finish();
-  return route_follower.step(planner, {x, 3.0, 0}, goal, false, 0.1).passage.value().middle.y();
+  return route_follower.step(planner, {.place = {x, 3.0, 0}, .goal = goal, .stamp_s = 0.1})
+      .passage.value()
+      .middle.y();
 }
 
 TEST(NarrowPassage, StaysWhenANearViewShiftsItByLessThanTenCentimetres) {
@@ -190,55 +194,54 @@ TEST(NarrowPassage, ItGoesStraightOnUntilItHasLeftIt) {
   RouteFollower route_follower;
   const Eigen::Vector3d goal{8, 1.0, 0};
   for (const double x : {4.0, 4.6, 5.1, 5.5}) {
-    const RouteStep step = route_follower.step(planner, {x, 3.0, 0}, goal, false, x);
+    const RouteStep step = route_follower.step(planner, {.place = {x, 3.0, 0}, .goal = goal, .stamp_s = x});
     EXPECT_NEAR(step.target.x(), 6.0, 0.2) << x;
     EXPECT_GT(step.target.y(), 2.6) << x << ": the goal lies aside";
   }
-  EXPECT_LT(route_follower.step(planner, {5.8, 3.0, 0}, goal, false, 6.0).target.y(), 2.4);
+  EXPECT_LT(route_follower.step(planner, {.place = {5.8, 3.0, 0}, .goal = goal, .stamp_s = 6.0}).target.y(),
+            2.4);
 }
 
-TEST(NarrowPassage, PlannerMayBackOffOnceBeforeTheGapCountsAsBlocked) {
-  RoutePlanner planner(car());
+/// The hall with one gap: a robot before it is asked to look for another route.
+RouteStep look_around_in_hall(RoutePlanner& planner, bool only_if_found) {
   set_hall(planner, 26, 33);
   RouteFollower route_follower(car());
-  const Eigen::Vector3d goal{8, 1.0, 0}, place{4.4, 3.1, 0};
-  for (const double t : {0.0, 0.5, 1.6, 3.0, 4.5})
-    EXPECT_TRUE(route_follower.step(planner, place, goal, true, t).passage) << t;
+  const RouteRequest request{.place = {4.4, 3.1, 0}, .goal = {8, 1.0, 0}};
+  EXPECT_TRUE(route_follower.step(planner, request).passage);
+  RouteRequest asks = request;
+  asks.replan = Recovery::Replan{only_if_found};
+  asks.stamp_s = 1.0;
+  return route_follower.step(planner, asks);
+}
+
+TEST(NarrowPassage, ABlockedOneIsClosedInItsMiddle) {
+  RoutePlanner planner(car());
+  const RouteStep step = look_around_in_hall(planner, false);
+  EXPECT_EQ(step.state, RouteStep::State::blocked);
+  EXPECT_TRUE(step.replanned);
+  ASSERT_EQ(planner.map().blocked_places().size(), 1u);
+  EXPECT_NEAR(planner.map().blocked_places().front().y, 3.0, 0.15) << "not before the robot, which is aside";
+  planner.unblock();
   EXPECT_FALSE(planner.has_blocked_places());
-  route_follower.step(planner, place, goal, true, 4.7);
-  EXPECT_TRUE(planner.has_blocked_places());
 }
 
-TEST(NarrowPassage, BackingOffIsNotCutShortByACycleThatWasFree) {
+TEST(NarrowPassage, WhatMovesClosesNoneIfThereIsNoOtherWay) {
   RoutePlanner planner(car());
-  set_hall(planner, 26, 33);
-  RouteFollower route_follower(car());
-  const Eigen::Vector3d goal{8, 1.0, 0}, place{4.4, 3.1, 0};
-  for (const double t : {0.0, 0.5, 1.6}) route_follower.step(planner, place, goal, true, t);
-  route_follower.step(planner, place, goal, false, 1.9);
-  for (const double t : {2.0, 3.1, 4.5}) route_follower.step(planner, place, goal, true, t);
+  const RouteStep step = look_around_in_hall(planner, true);
+  EXPECT_EQ(step.state, RouteStep::State::along);
   EXPECT_FALSE(planner.has_blocked_places());
-  route_follower.step(planner, place, goal, true, 4.7);
-  EXPECT_TRUE(planner.has_blocked_places());
 }
 
-TEST(NarrowPassage, BlockedBehindThePassageCountsAtOnce) {
-  RoutePlanner planner(car());
-  set_hall(planner, 26, 33);
-  RouteFollower route_follower(car());
-  const Eigen::Vector3d goal{8, 3.0, 0};
-  route_follower.step(planner, {4.4, 3.0, 0}, goal, false, 0.0);
-  for (const double t : {0.5, 1.0, 1.6}) route_follower.step(planner, {5.5, 3.0, 0}, goal, true, t);
-  EXPECT_TRUE(planner.has_blocked_places());
-}
-
-TEST(NarrowPassage, BlockedFarBeforeThePassageCountsAtOnce) {
+TEST(NarrowPassage, FarBeforeItWhatBlocksIsAheadOfTheRobot) {
   RoutePlanner planner(wheeled());
   set_hall(planner, 27, 33);
   RouteFollower route_follower;
-  for (const double t : {0.0, 0.5, 1.6, 2.7})
-    route_follower.step(planner, {2.5, 3.05, 0}, {8, 1.0, 0}, true, t);
-  EXPECT_TRUE(planner.has_blocked_places());
+  RouteRequest request{.place = {2.5, 3.05, 0}, .goal = {8, 1.0, 0}};
+  route_follower.step(planner, request);
+  request.replan = Recovery::Replan{false};
+  route_follower.step(planner, request);
+  ASSERT_EQ(planner.map().blocked_places().size(), 1u);
+  EXPECT_NEAR(planner.map().blocked_places().front().x, 3.4, 0.1);
 }
 
 }  // namespace

@@ -7,10 +7,8 @@
 
 namespace adit::nav::test {
 
-/// A robot that is led by the route keeper, as the agent does it.
-/// Default of the agent, s: then the way counts as blocked.
+/// A robot that is led by the route follower and its recovery, as the agent does it.
 struct RouteDrive {
-  static constexpr double kHeldAfter = 1.5;
   ClosedLoop loop;
   RoutePlanner planner;
   RouteFollower route_follower;
@@ -19,20 +17,35 @@ struct RouteDrive {
   RouteDrive(const Platform& platform, BoxWorld world, const Pose2& start)
       : loop(platform, std::move(world), start), planner(platform), route_follower(platform) {}
 
-  /// The map takes a scan, and the keeper says where to drive next.
+  /// The map takes a scan, and the route follower says where to drive next.
   void look(const Eigen::Vector2d& goal) {
     const Pose2 at = loop.odometry();
     planner.add_scan(loop.world.scan(loop.truth, loop.platform.lidar_height, loop.rings, loop.columns,
                                      loop.noise, loop.random),
                      Pose3::level(at, 0.0), loop.time);
-    step = route_follower.step(planner, {at.x, at.y, 0}, {goal.x(), goal.y(), std::nan("")},
-                               loop.last.blocked || loop.held.held(loop.time, kHeldAfter), loop.time);
+    next(goal);
+  }
+  void next(const Eigen::Vector2d& goal) {
+    const Pose2 at = loop.odometry();
+    Recovery& recovery = loop.recovery;
+    step = route_follower.step(planner, {.place = {at.x, at.y, 0},
+                                         .goal = {goal.x(), goal.y(), std::nan("")},
+                                         .goal_id = 1,
+                                         .replan = recovery.take_replan(),
+                                         .free = recovery.take_free(),
+                                         .stamp_s = loop.time});
+    if (step.replanned) recovery.replanned();
   }
   /// Drives there for a tenth of a second.
   void drive() {
-    Target target = target_of(step);
-    target.held = loop.held.held(loop.time, 2 * kHeldAfter);
-    loop.cycle(target);
+    const Target target = target_of(step);
+    if (target.kind == Target::Kind::goal) target_ = target;
+    loop.recovering_cycle(target.kind == Target::Kind::none && loop.recovery.gave_up() ? target_ : target,
+                          {.goal = 1,
+                           .route = step.route,
+                           .left = step.length,
+                           .unreachable = step.state == RouteStep::State::unreachable,
+                           .start_blocked = step.state == RouteStep::State::start_blocked});
   }
   bool arrived() const { return step.last && loop.last.arrived && loop.follower.command().zero(); }
 
@@ -47,6 +60,9 @@ struct RouteDrive {
     }
     return false;
   }
+
+ private:
+  Target target_{};  ///< The last one on a route.
 };
 
 }  // namespace adit::nav::test

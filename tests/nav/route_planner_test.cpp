@@ -261,9 +261,9 @@ TEST(RoutePlanner, TwoFloorsWithARamp) {
 TEST(RoutePlanner, TheSamePlaceOnAnotherFloorIsAnotherGoal) {
   TwoFloors floors(true);
   RouteFollower route_follower;
-  route_follower.step(floors.planner, {2, 2, 0}, {8, 2, std::nan("")}, false, 0.0);
+  route_follower.step(floors.planner, {.place = {2, 2, 0}, .goal = {8, 2, std::nan("")}});
   EXPECT_LT(route_follower.route().length, 7);
-  route_follower.step(floors.planner, {2, 2, 0}, {8, 2, 3}, false, 0.1);
+  route_follower.step(floors.planner, {.place = {2, 2, 0}, .goal = {8, 2, 3}, .stamp_s = 0.1});
   EXPECT_GT(route_follower.route().length, 15);
 }
 

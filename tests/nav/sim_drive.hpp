@@ -58,8 +58,7 @@ class SimDrive {
         r.local_navigation.add_scan(points, body, now);
         r.moving += r.local_navigation.movers().size();
         if (!r.goal) continue;
-        Target target = Target::to(r.start.inverse() * *r.goal);
-        target.held = r.held.held(now, 3.0);
+        const Target target = Target::to(r.start.inverse() * *r.goal);
         r.plan = r.local_navigation.plan(target, odom, now);
       }
       if (phase == 4 && r.goal) {

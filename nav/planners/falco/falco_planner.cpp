@@ -24,7 +24,6 @@ constexpr float kSmooth = 0.1f;        ///< Ground up to this cost counts as smo
 constexpr float kVeryRough = 0.5f;     ///< Ground above this cost is avoided where there is an alternative.
 constexpr std::array<float, 2> kEase{0.4f, 0.05f};  ///< Weight of a path across rough and very rough ground.
 constexpr double kSlowest = 0.25;                   ///< Fraction of the speed on ground of weight zero.
-constexpr double kLongestRetreat = 8.0;             ///< A retreat that takes longer is blocked too, s.
 constexpr float kSecondChoice = 0.3f;  ///< Weight of the driving direction opposite to the target's.
 
 /// Converts an angle in radians to degrees in [0, 360), rounded down.
@@ -134,12 +133,7 @@ Plan FalcoPlanner::plan(const Target& target, const Pose2& pose, std::span<const
                         double stamp_s) {
   Plan plan;
   plan.stamp_s = stamp_s;
-  Goal goal = goal_of(target, pose);
-  watch_progress(target, goal.distance);
-  if (retreating_) {
-    const Goal back = retreat_goal(pose, stamp_s);
-    if (retreating_) goal = back;
-  }
+  const Goal goal = goal_of(target, pose);
   project(goal, obstacles, plan);
 
   const bool nowhere =
@@ -148,91 +142,23 @@ Plan FalcoPlanner::plan(const Target& target, const Pose2& pose, std::span<const
     plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
     return plan;
   }
-  if (!retreating_ && goal.distance <= (target.tolerance > 0.0 ? target.tolerance : params_.tolerance)) {
+  if (goal.distance <= (target.tolerance > 0.0 ? target.tolerance : params_.tolerance)) {
     plan.arrived = true;
     return plan;
   }
   list_headings(goal);
   judge_headings(goal);
   Choice choice;
-  // The collision monitor blocks what the planner would choose now; during a retreat the choice is free.
-  const bool held = target.held && target.kind == Target::Kind::goal && !retreating_;
-  const bool found = !held && choose(goal, choice);
-  if (found && !retreating_) free_stamp_ = stamp_s;
-  const bool tired = target.kind == Target::Kind::goal && given_up(found && !retreating_, stamp_s);
-  if (!found || tired) {
+  if (!choose(goal, choice)) {
     plan.blocked = true;
     plan.reason = Reason::blocked;
     last_turn_ = 0;
-    if (target.kind == Target::Kind::goal && !tired) consider_retreat(pose, stamp_s, held);
     return plan;
   }
   write_path(choice, goal, pose, plan);
   plan.max_speed = speed_limit(target, choice, pose, plan, obstacles);
   last_turn_ = plan.turn;
   return plan;
-}
-
-void FalcoPlanner::watch_progress(const Target& target, double distance) {
-  constexpr double kSameGoal = 0.1, kProgress = 0.5;  // m
-  // The target is a point on a route at a fixed distance ahead, so it moves back with the robot.
-  const double same = retreating_ ? params_.retreat + kProgress : kSameGoal;
-  const bool other = target.kind != Target::Kind::goal || (target.goal - goal_).norm() > same;
-  if (other) {
-    goal_ = target.goal;
-    retreating_ = false;
-    free_stamp_ = std::numeric_limits<double>::infinity();
-  }
-  if (other || distance < nearest_ - kProgress) {
-    nearest_ = distance;
-    retreats_left_ = params_.retreats;
-  }
-  constexpr double kCloser = 0.1;  // m
-  if (other || distance < closest_ - kCloser) {
-    closest_ = distance;
-    effort_ = 0;
-    rest_until_ = -std::numeric_limits<double>::infinity();
-  }
-}
-
-bool FalcoPlanner::given_up(bool drives, double stamp_s) {
-  constexpr double kLongest = 0.5;  // s: a longer interval was a pause.
-  if (drives) effort_ += std::clamp(stamp_s - last_stamp_, 0.0, kLongest);
-  last_stamp_ = stamp_s;
-  // The robot may have to turn fully before it can get nearer.
-  const double turn = 2 * M_PI / platform_.max_turn;
-  if (effort_ > (closest_ < params_.effort_range ? params_.effort_near + turn : params_.effort)) {
-    effort_ = 0;
-    rest_until_ = stamp_s + params_.rest;
-  }
-  return stamp_s < rest_until_;
-}
-
-FalcoPlanner::Goal FalcoPlanner::retreat_goal(const Pose2& pose, double stamp_s) {
-  const Eigen::Vector2d to = pose.inverse() * retreat_to_;
-  constexpr double kSpread = 45.0;
-  Goal goal{to.norm(), round_to_degree(std::atan2(to.y(), to.x())),
-            kSpread,   static_cast<int>(kSpread / kHeadingStep),
-            true,      false};
-  goal.backwards = std::fabs(goal.bearing) > M_PI / 2;
-  if (goal.distance <= params_.tolerance || stamp_s > retreat_until_) retreating_ = false;
-  return goal;
-}
-
-void FalcoPlanner::consider_retreat(const Pose2& pose, double stamp_s, bool at_once) {
-  if (retreating_ || retreats_left_ == 0) {
-    retreating_ = false;
-    return;
-  }
-  free_stamp_ = std::min(free_stamp_, stamp_s);
-  if (!at_once && stamp_s - free_stamp_ < params_.patience) return;
-  // Straight back, or ahead when that leads away from the goal.
-  const Eigen::Vector2d to = pose.inverse() * goal_;
-  retreat_to_ = pose * Eigen::Vector2d(to.x() > 0 ? -params_.retreat : params_.retreat, 0.0);
-  retreating_ = true;
-  retreat_until_ = stamp_s + kLongestRetreat;
-  free_stamp_ = std::numeric_limits<double>::infinity();
-  --retreats_left_;
 }
 
 FalcoPlanner::Goal FalcoPlanner::goal_of(const Target& target, const Pose2& pose) {

@@ -34,14 +34,6 @@ struct FalcoPlannerParams {
   double stick_spread{45.0};  ///< Maximum angle to a direction target, degrees, [10, 120].
   /// Maximum angle for paths that are only partly free, degrees, [10, 120].
   double detour_spread{60.0};
-  double patience{3.0};  ///< Time without a free path before the robot backs up, s, [0, 60].
-  double retreat{1.2};   ///< Distance that it backs up, m, [0.5, 3].
-  int retreats{2};  ///< Attempts at backing up until it gets nearer to the goal; then it is blocked, [0, 10].
-  double effort{20.0};  ///< Driving time without getting nearer to a goal until it is blocked, s, [1, 600].
-  /// The same within effort_range of the goal, plus the time of a full turn, s, [1, 600].
-  double effort_near{4.0};
-  double effort_range{1.0};  ///< m, [0, 10]
-  double rest{30.0};         ///< Time that it then stays blocked before it tries again, s, [0, 3600].
   PathSpeedParams speed{};
 };
 
@@ -78,11 +70,6 @@ struct PlannerLibrary {
 ///   is free or, failing that, when the robot can reach it by driving backwards.
 /// - A stick held straight ahead or back holds the robot's heading (see HeadingHold), so the robot passes an
 ///   obstacle and stops at a wall instead of following it.
-/// - On the way to a goal, a robot that was blocked, or that the collision monitor stopped, backs up a little
-///   and tries again, a few times: in a passage it cannot turn, and so cannot reach a free path beside the
-///   one that it tried.
-/// - A robot that drives without getting nearer to its goal, for example because the goal lies inside or
-///   behind an obstacle, reports for a while that it is blocked.
 /// - Passable ground with a cost lowers the weight and the speed of paths across it.
 /// - Shorter paths and tighter margins are further libraries of the true footprint. Falco scales the obstacle
 ///   points, which would scale the robot as well.
@@ -152,10 +139,6 @@ class FalcoPlanner final : public Planner {
   float ease(int heading, int stage, int node) const;
   bool vote(const Option& option, int stage, double spread, Choice& best);
   bool choose(const Goal& goal, Choice& best);
-  Goal retreat_goal(const Pose2& pose, double stamp_s);
-  void consider_retreat(const Pose2& pose, double stamp_s, bool at_once);
-  void watch_progress(const Target& target, double distance);
-  bool given_up(bool drives, double stamp_s);
   void write_path(const Choice& choice, const Goal& goal, const Pose2& pose, Plan& plan) const;
   double speed_limit(const Target& target, const Choice& choice, const Pose2& pose, const Plan& plan,
                      std::span<const ObstaclePoint> obstacles) const;
@@ -167,17 +150,6 @@ class FalcoPlanner final : public Planner {
   int rings_{0};  ///< Of the largest grid.
   int last_turn_{0};
   HeadingHold heading_hold_{};
-  Eigen::Vector2d goal_{0, 0};  ///< The goal that the following members refer to, odometry frame.
-  double nearest_{0};           ///< Least distance to it, updated in steps of half a metre, m.
-  double closest_{0};           ///< Least distance to it, in finer steps, m.
-  double effort_{0};            ///< Driving time since the robot last got nearer, s.
-  double last_stamp_{0};        ///< Of the previous plan, s.
-  double rest_until_{0};        ///< The robot stays blocked until then, s.
-  double free_stamp_{0};  ///< Time when a path was last free or the robot became blocked, s; or infinite.
-  int retreats_left_{0};
-  bool retreating_{false};
-  double retreat_until_{0};           ///< s
-  Eigen::Vector2d retreat_to_{0, 0};  ///< Odometry frame.
 
   // Data of one cycle.
   Cells occupied_{};              ///< Impassable cells.

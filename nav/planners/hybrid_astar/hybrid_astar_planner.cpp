@@ -51,84 +51,36 @@ Plan HybridAStarPlanner::plan(const Target& target, const Pose2& pose,
       target.kind == Target::Kind::none || (target.kind == Target::Kind::direction && target.speed <= 0.0);
   const double distance = (target.goal - pose.position()).norm();
   const bool goal = target.kind == Target::Kind::goal;
-  plan.arrived = goal && distance <= params_.tolerance;
+  plan.arrived = goal && distance <= (target.tolerance > 0.0 ? target.tolerance : params_.tolerance);
   if (nowhere || plan.arrived) {
     current_.count = 0;
     heading_hold_.forget();
-    forget_retreat();
     plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
     return plan;
   }
 
-  const Target aim = aim_of(target, pose, stamp_s);
-  HybridAStarTask task = task_of(aim, pose, rear);
-  if (goal && !retreat_) see_passage(target, pose, obstacles, task);
-  // The collision monitor blocks what the planner would choose now; during a retreat the choice is free.
-  const bool held = target.held && goal && !retreat_;
-  const bool keeps = !held && follows_on(rear) && current_aim_.kind == aim.kind &&
-                     (!goal || (current_aim_.goal - aim.goal).norm() < 1.0) && passable(rear);
+  HybridAStarTask task = task_of(target, pose, rear);
+  if (goal) see_passage(target, pose, obstacles, task);
+  const bool keeps = follows_on(rear) && current_target_.kind == target.kind &&
+                     (!goal || (current_target_.goal - target.goal).norm() < 1.0) && passable(rear);
   // A path through a gap stays unless a nearer view shows that it misses the middle.
   const bool to_passage = keeps && current_.through && task.passage;
   const bool goes_through = to_passage && !misses(*task.passage, rear);
   if (to_passage && !changes_ahead()) task.only = 1;
-  const bool finds = !held && !goes_through && (to_passage ? find_through(task) : find(task));
+  const bool finds = !goes_through && (to_passage ? find_through(task) : find(task));
   const bool takes = finds && (!keeps || is_better(rear, to_passage));
   if (takes) {
     adopt(rear);
-    current_aim_ = aim;
+    current_target_ = target;
   }
-  const bool drives = takes || keeps;
-  const bool tired = given_up(target, distance, drives, stamp_s);
-  if (!drives || tired) {
+  if (!takes && !keeps) {
     current_.count = 0;
     plan.blocked = true;
     plan.reason = Reason::blocked;
-    if (!tired) consider_retreat(target, pose, stamp_s);
     return plan;
   }
-  if (!retreat_) blocked_since_.reset();
-  write(aim, pose, obstacles, plan);
-  if (retreat_) plan.ends_at_goal = false;
+  write(target, pose, obstacles, plan);
   return plan;
-}
-
-Target HybridAStarPlanner::aim_of(const Target& target, const Pose2& pose, double stamp_s) {
-  constexpr double kSameGoal = 0.1, kProgress = 0.5, kThere = 0.3;  // m
-  const double distance = (target.goal - pose.position()).norm();
-  // The target is a point on a route at a fixed distance ahead, so it moves back with the robot.
-  const double same = retreat_ ? params_.retreat + kProgress : kSameGoal;
-  const bool other = target.kind != Target::Kind::goal || !goal_ || (target.goal - *goal_).norm() > same;
-  if (other) forget_retreat();
-  if (other || distance < nearest_ - kProgress) {
-    nearest_ = distance;
-    retreats_left_ = params_.retreats;
-  }
-  if (retreat_ && ((*retreat_ - pose.position()).norm() < kThere || stamp_s > retreat_until_)) {
-    retreat_.reset();
-    current_.count = 0;
-  }
-  return retreat_ ? Target::to(*retreat_, target.speed) : target;
-}
-
-void HybridAStarPlanner::forget_retreat() {
-  retreat_.reset();
-  blocked_since_.reset();
-}
-
-void HybridAStarPlanner::consider_retreat(const Target& target, const Pose2& pose, double stamp_s) {
-  constexpr double kLongest = 8.0;  // s
-  if (retreat_ || target.kind != Target::Kind::goal || retreats_left_ == 0) {
-    forget_retreat();
-    return;
-  }
-  if (!blocked_since_) blocked_since_ = stamp_s;
-  if (!target.held && stamp_s - *blocked_since_ < params_.patience) return;
-  // Straight back, or ahead when that leads away from the goal.
-  const Eigen::Vector2d to = pose.inverse() * target.goal;
-  retreat_ = pose * Eigen::Vector2d(to.x() > 0 ? -params_.retreat : params_.retreat, 0.0);
-  retreat_until_ = stamp_s + kLongest;
-  blocked_since_.reset();
-  --retreats_left_;
 }
 
 void HybridAStarPlanner::watch_motion(const Pose2& rear, double stamp_s) {
@@ -254,7 +206,6 @@ void HybridAStarPlanner::next_part() {
 }
 
 bool HybridAStarPlanner::drives_ahead() const {
-  if (retreat_) return false;
   for (std::size_t i = at_ + 1; i < current_.count; ++i)
     if (current_.spots[i].direction < 0) return false;
   return true;
@@ -294,31 +245,6 @@ bool HybridAStarPlanner::passable(const Pose2& rear) const {
                       current_.tight ? kTightLoss : kHysteresis))
       return false;
   return true;
-}
-
-bool HybridAStarPlanner::given_up(const Target& target, double distance, bool drives, double stamp_s) {
-  constexpr double kSameGoal = 0.1, kCloser = 0.1, kLongest = 0.5;  // m, m, s: a longer interval was a pause.
-  if (target.kind != Target::Kind::goal) {
-    goal_.reset();
-    return false;
-  }
-  if (retreat_) {  // A retreat need not get nearer.
-    last_s_ = stamp_s;
-    return false;
-  }
-  if (!goal_ || (target.goal - *goal_).norm() > kSameGoal || distance < closest_ - kCloser) {
-    goal_ = target.goal;
-    closest_ = distance;
-    effort_ = 0;
-    rest_until_ = -std::numeric_limits<double>::infinity();
-  }
-  if (drives) effort_ += std::clamp(stamp_s - last_s_, 0.0, kLongest);
-  last_s_ = stamp_s;
-  if (effort_ > params_.effort) {
-    effort_ = 0;
-    rest_until_ = stamp_s + params_.rest;
-  }
-  return stamp_s < rest_until_;
 }
 
 // Whether the path up to a spot reaches, before the robot could slow down, a place with only the tight

@@ -21,11 +21,6 @@ struct HybridAStarPlannerParams {
   double reverse_speed{1.0};  ///< Speed limit backwards, m/s, (0, 10].
   double tight_speed{0.3};    ///< Speed limit with only the tight margin, m/s, (0, 2].
   double rough_slows{0.75};   ///< Fraction of the speed lost on ground of cost 1, [0, 0.95].
-  double effort{25.0};   ///< Driving time without getting nearer to a goal until it is blocked, s, [1, 600].
-  double rest{30.0};     ///< Time that it then stays blocked before it tries again, s, [0, 3600].
-  double patience{2.0};  ///< Time without a path to a goal before the robot backs up, s, [0, 60].
-  double retreat{1.5};   ///< Distance that it backs up, m, [0.3, 3].
-  int retreats{3};       ///< Attempts at backing up until it gets nearer to the goal, [0, 100].
   PathSpeedParams speed{};
 };
 
@@ -33,7 +28,7 @@ struct HybridAStarPlannerParams {
 /// finds a path of short motions, forwards and backwards, for the next metres, starting with the robot's
 /// curvature, so the robot turns round in as many moves as the place requires. A path whose direction changes
 /// is followed until another one is clearly better or an obstacle blocks it; each plan is the part that is
-/// driven in one direction. Without a path the robot backs up and tries again.
+/// driven in one direction.
 class HybridAStarPlanner final : public Planner {
  public:
   explicit HybridAStarPlanner(const Platform& platform, const HybridAStarPlannerParams& params = {});
@@ -45,7 +40,7 @@ class HybridAStarPlanner final : public Planner {
   void watch(const Pose2& pose, double stamp_s) { watch_motion(pose * Pose2{-rear_, 0, 0}, stamp_s); }
   /// Measured speed, m/s, negative backwards.
   double speed() const { return speed_; }
-  /// Whether neither the rest of the current path nor a retreat leads backwards.
+  /// Whether the rest of the current path does not lead backwards.
   bool drives_ahead() const;
 
  private:
@@ -65,11 +60,6 @@ class HybridAStarPlanner final : public Planner {
   void adopt(const Pose2& rear);
   void next_part();
   bool changes_ahead() const;
-  /// The current target: `target`, or the end of a retreat.
-  Target aim_of(const Target& target, const Pose2& pose, double stamp_s);
-  void forget_retreat();
-  void consider_retreat(const Target& target, const Pose2& pose, double stamp_s);
-  bool given_up(const Target& target, double distance, bool drives, double stamp_s);
   bool tightens(const Pose2& back, std::size_t last) const;
   void write(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
              Plan& plan) const;
@@ -83,20 +73,13 @@ class HybridAStarPlanner final : public Planner {
   CostToGo cost_to_go_{};
   HybridAStarPath found_{}, current_{};  ///< current_: odometry frame.
   std::size_t at_{0},
-      end_{0};            ///< On the current path: index of the robot, and of the next change of direction.
-  Target current_aim_{};  ///< Of the current path.
+      end_{0};  ///< On the current path: index of the robot, and of the next change of direction.
+  Target current_target_{};        ///< Of the current path.
   std::optional<Pose2> before_{};  ///< Of the rear axle, odometry frame.
   double before_s_{0};
   double speed_{0};      ///< Negative backwards, m/s.
   double curvature_{0};  ///< Of the driven path, rad/m.
   HeadingHold heading_hold_{};
-  std::optional<Eigen::Vector2d> goal_{};  ///< The goal that effort and retreats refer to.
-  double closest_{0}, effort_{0}, last_s_{0}, rest_until_{0};
-  std::optional<Eigen::Vector2d> retreat_{};  ///< Odometry frame.
-  std::optional<double> blocked_since_{};
-  /// nearest_: distance to the goal when the retreats were last refilled, m.
-  double retreat_until_{0}, nearest_{0};
-  int retreats_left_{0};
 };
 
 }  // namespace adit::nav

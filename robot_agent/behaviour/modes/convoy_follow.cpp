@@ -71,9 +71,9 @@ void ConvoyFollowMode::tick(bool passes, Time now) {
   if (target) {
     // Each change begins a new route.
     if (pose && target->head<2>() != next_.goal.head<2>())
-      next_ = {{target->x(), target->y(), std::nan("")},
-               max_route((target->head<2>() - pose->position()).norm()),
-               true};
+      next_ = {.goal = {target->x(), target->y(), std::nan("")},
+               .max_route = max_route((target->head<2>() - pose->position()).norm()),
+               .continues = true};
     context_.output.write(next_, now);
   } else {
     context_.output.write(Stand{}, now);

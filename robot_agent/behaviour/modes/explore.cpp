@@ -28,7 +28,6 @@ void ExploreMode::begin() {
   navigated_ = {};
   asked_.reset();
   last_asked_.reset();
-  blocked_since_.reset();
   ends_.reset();
   begins_ = true;
   complete_ = false;
@@ -41,7 +40,6 @@ void ExploreMode::enter(Time now) {
     request_ = {};
     begin();
   }
-  blocked_since_.reset();
   if (!ends_ && std::isfinite(request_.limit)) ends_ = now + from_seconds(request_.limit);
 }
 
@@ -49,7 +47,7 @@ void ExploreMode::tick(bool passes, Time now) {
   active_ = true;
   if (is_over()) return context_.output.write(Stand{}, now);
   if (view_.phase == ExplorationPhase::reporting) {
-    if (passes) tick_return(now);
+    if (passes) tick_return();
   } else {
     if (ends_ && now >= *ends_)
       conclude(Reason::cancelled, "the time for it is over");
@@ -57,28 +55,20 @@ void ExploreMode::tick(bool passes, Time now) {
       ask(now);
   }
   if (!is_over() && goal_)
-    context_.output.write(GoTo{{goal_->x(), goal_->y(), goal_->z()}}, now);
+    context_.output.write(GoTo{.goal = *goal_,
+                               .id = goal_id_,
+                               .pass = view_.open > 1 && view_.phase != ExplorationPhase::reporting,
+                               .continues = true},
+                          now);
   else
     context_.output.write(Stand{}, now);
 }
 
-bool ExploreMode::is_given_up(Time now) const {
-  return navigated_.unreachable || navigated_.stuck ||
-         (blocked_since_ && now - *blocked_since_ >= kGivenUpAfter);
-}
-
 void ExploreMode::ask(Time now) {
-  if (!goal_ || !navigated_.blocked)
-    blocked_since_.reset();
-  else if (!blocked_since_)
-    blocked_since_ = now;
   if (asked_ && now - *asked_ < kAnswerLost) return;
   if (last_asked_ && now - *last_asked_ < kAskPeriod) return;
-  const bool blocked = goal_ && is_given_up(now);
-  if (blocked) {
-    navigated_ = {};
-    blocked_since_.reset();
-  }
+  const bool blocked = goal_ && is_given_up();
+  if (blocked) navigated_ = {};
   asked_ = last_asked_ = now;
   context_.explore({blocked, begins_, request_.area},
                    [this, run = run_](const Result<nav::ExploreStep>& step) {
@@ -106,8 +96,8 @@ void ExploreMode::answered(const nav::ExploreStep& step) {
   }
   if (!goal_ || (*goal_ - *step.goal).norm() > 0.01) {
     goal_ = *step.goal;
+    ++goal_id_;
     navigated_ = {};
-    blocked_since_.reset();
   }
   const auto pose = context_.pose();
   const bool far = pose && (goal_->head<2>() - pose->position()).norm() > kFar;
@@ -130,7 +120,6 @@ void ExploreMode::conclude(Reason reason, const std::string& text) {
   ++run_;  // No answer of the router counts any more.
   asked_.reset();
   navigated_ = {};
-  blocked_since_.reset();
   goal_.reset();
   begin_return();
 }
@@ -150,16 +139,13 @@ void ExploreMode::begin_return() {
 void ExploreMode::return_to(std::optional<Eigen::Vector2d> place) {
   if (!place) return finish();
   goal_ = Eigen::Vector3d(place->x(), place->y(), std::nan(""));
+  ++goal_id_;
 }
 
-void ExploreMode::tick_return(Time now) {
-  if (!navigated_.blocked)
-    blocked_since_.reset();
-  else if (!blocked_since_)
-    blocked_since_ = now;
+void ExploreMode::tick_return() {
   const bool heard = request_.after == AfterExploring::report && context_.holder_heard();
   if (heard || navigated_.arrived) return finish();
-  if (!navigated_.unreachable && !(blocked_since_ && now - *blocked_since_ >= kReturnBlocked)) return;
+  if (!is_given_up()) return;
   context_.notify_holder(Severity::warning, "unreachable", Reason::goal_unreachable,
                          request_.after == AfterExploring::home
                              ? "the robot explored, but found no way home"

@@ -12,11 +12,9 @@ namespace adit::agent {
 /// until nothing new can be seen from any of them. The mode then ends in `hold`.
 class ExploreMode : public ModeModule {
  public:
-  static constexpr Duration kAskPeriod = 200ms;    ///< The router takes a scan as often.
-  static constexpr Duration kAnswerLost = 2s;      ///< A later answer is not awaited.
-  static constexpr Duration kGivenUpAfter = 4s;    ///< A goal that is blocked for longer is given up.
-  static constexpr Duration kReturnBlocked = 30s;  ///< The last leg is given up when blocked for longer.
-  static constexpr double kFar = 16.0;             ///< m
+  static constexpr Duration kAskPeriod = 200ms;  ///< The router takes a scan as often.
+  static constexpr Duration kAnswerLost = 2s;    ///< A later answer is not awaited.
+  static constexpr double kFar = 16.0;           ///< m
 
   explicit ExploreMode(ModeContext context) : context_(std::move(context)) {}
   /// Robots that fly, and those without a router, have no explorer.
@@ -45,13 +43,13 @@ class ExploreMode : public ModeModule {
   void ask(Time now);
   void answered(const nav::ExploreStep& step);
   /// Whether the goal was found blocked and is to be replaced.
-  bool is_given_up(Time now) const;
+  bool is_given_up() const { return navigated_.unreachable || navigated_.gave_up; }
   /// Ends the search for new places and begins the last leg.
   void conclude(Reason reason, const std::string& text);
   void begin_return();
   void finish();
   void return_to(std::optional<Eigen::Vector2d> place);
-  void tick_return(Time now);
+  void tick_return();
   std::string summary() const;
 
   ModeContext context_;
@@ -59,11 +57,11 @@ class ExploreMode : public ModeModule {
   contract::Exploration view_{};
   bool active_{};                          ///< The mode was not left.
   std::optional<Eigen::Vector3d> goal_{};  ///< Map frame, m.
+  std::uint32_t goal_id_{};
   Progress navigated_{};
   std::optional<Time> asked_{};  ///< The answer is awaited since.
   std::optional<Time> last_asked_{};
-  std::uint32_t run_{};  ///< Answers of an earlier exploration are discarded.
-  std::optional<Time> blocked_since_{};
+  std::uint32_t run_{};                                ///< Answers of an earlier exploration are discarded.
   std::optional<Time> ends_{};                         ///< Of the request's limit.
   bool begins_{true};                                  ///< The router does not know of this exploration yet.
   Reason why_{Reason::none};                           ///< Why the exploration ended, during the last leg.

@@ -40,7 +40,7 @@ void GetOutMode::note(Facts& facts, Time) const {
 void GetOutMode::tick(bool, Time now) {
   const auto place = context_.right_of_way ? context_.right_of_way->place() : std::nullopt;
   if (place)
-    context_.output.write(GoTo{{place->x(), place->y(), std::nan("")}}, now);
+    context_.output.write(GoTo{.goal = {place->x(), place->y(), std::nan("")}}, now);
   else
     context_.output.write(Stand{}, now);
 }

@@ -6,20 +6,23 @@
 namespace adit::agent {
 namespace {
 
-std::string text_of(nav::Side side) {
-  switch (side) {
-    case nav::Side::none:
-      return "every path to the goal is blocked";
-    case nav::Side::ahead:
-      return "an obstacle touches the robot, or nearly, ahead, and no motion leads away from it";
-    case nav::Side::behind:
-      return "an obstacle touches the robot, or nearly, behind it, and no motion leads away from it";
-    case nav::Side::left:
-      return "an obstacle touches the robot, or nearly, on its left, and no motion leads away from it";
-    case nav::Side::right:
-      return "an obstacle touches the robot, or nearly, on its right, and no motion leads away from it";
+std::string text_of(const Progress& progress) {
+  static constexpr std::array kSides{"", " ahead", " on its left", " behind it", " on its right"};
+  if (progress.in_collision != nav::Side::none)
+    return std::string("an obstacle touches the robot, or nearly,") +
+           kSides[static_cast<std::size_t>(progress.in_collision)] + ", and no motion leads away from it";
+  switch (progress.cause) {
+    case nav::Cause::mover:
+      return "something that moves is in the way; the robot waits for it";
+    case nav::Cause::peer:
+      return "another robot of the team is in the way; the robot waits for it";
+    case nav::Cause::border:
+      return "the border of an area is in the way";
+    case nav::Cause::fixed:
+    case nav::Cause::none:
+      break;
   }
-  return {};
+  return "every path to the goal is blocked";
 }
 
 }  // namespace
@@ -29,11 +32,10 @@ void WaypointMode::note(Facts& facts, Time) const {
   facts.goal_free = !goal_.known || context_.goal_free(goal_.place.head<2>());
 }
 
-void WaypointMode::enter(Time now) {
+void WaypointMode::enter(Time) {
   driven_ = 0.0;
   last_.reset();
   used_up_ = false;
-  free_since_ = now;
   blocked_reported_ = false;
 }
 
@@ -52,8 +54,10 @@ void WaypointMode::tick(bool passes, Time now) {
     context_.output.write(Stand{}, now);
   else
     context_.output.write(
-        GoTo{{goal_.place.x(), goal_.place.y(), goal_.on_floor ? std::nan("") : goal_.place.z()}}, now);
-  watch(progress(passes).state, now);
+        GoTo{.goal = {goal_.place.x(), goal_.place.y(), goal_.on_floor ? std::nan("") : goal_.place.z()},
+             .id = goal_.id},
+        now);
+  watch(progress(passes).state);
 }
 
 void WaypointMode::count(bool passes) {
@@ -81,7 +85,7 @@ void WaypointMode::limit_unknown(double metres) {
   budget_ = std::isnan(metres) ? std::max(kLeast, kDetour * straight) : metres;
 }
 
-void WaypointMode::watch(GoalState state, Time now) {
+void WaypointMode::watch(GoalState state) {
   const bool unreachable = state == GoalState::blocked && navigated_.unreachable && !used_up_;
   if (unreachable && !unreachable_reported_)
     context_.notify_holder(Severity::warning, "unreachable", unreachable_because(),
@@ -89,12 +93,11 @@ void WaypointMode::watch(GoalState state, Time now) {
                                                              : std::string(describe(navigated_.reason)));
   unreachable_reported_ = unreachable;
   if (state != GoalState::blocked || unreachable || used_up_) {
-    free_since_ = now;
     blocked_reported_ = false;
-  } else if (!blocked_reported_ && now - free_since_ >= kBlockedAfter) {
+  } else if (!blocked_reported_ && navigated_.waits && !navigated_.stuck) {
     blocked_reported_ = true;
     context_.notify_holder(Severity::warning, std::string(name(why_blocked())), why_blocked(),
-                           text_of(navigated_.in_collision));
+                           text_of(navigated_));
   }
   if (navigated_.stuck && !stuck_reported_)
     context_.notify_holder(Severity::warning, "stuck", Reason::stuck,
@@ -130,9 +133,8 @@ ModeProgress WaypointMode::progress(bool passes) const {
   if (p.state == GoalState::blocked)
     p.reason = used_up_                 ? Reason::unknown_budget
                : navigated_.unreachable ? unreachable_because()
+               : navigated_.stuck       ? Reason::stuck
                                         : why_blocked();
-  else if (p.state == GoalState::active && navigated_.stuck)
-    p.reason = Reason::stuck;
   return p;
 }
 

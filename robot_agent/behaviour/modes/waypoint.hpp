@@ -10,9 +10,6 @@ namespace adit::agent {
 /// The mode `waypoint`: navigation drives to the goal and stops there.
 class WaypointMode : public ModeModule {
  public:
-  /// Time until the holder is notified that every path is blocked.
-  static constexpr Duration kBlockedAfter = 5s;
-
   explicit WaypointMode(ModeContext context) : context_(std::move(context)) {}
   static std::unique_ptr<ModeModule> make(const ModeContext& context) {
     return std::make_unique<WaypointMode>(context);
@@ -32,7 +29,7 @@ class WaypointMode : public ModeModule {
   void restore(const StoredBehaviour& stored) override;
 
  private:
-  void watch(GoalState state, Time now);
+  void watch(GoalState state);
   /// Counts the metres towards a goal that was not seen.
   void count(bool passes);
   /// Returns the reason why the goal cannot be reached.
@@ -52,7 +49,6 @@ class WaypointMode : public ModeModule {
   ModeContext context_;
   Goal goal_{};
   Progress navigated_{};
-  Time free_since_{};
   bool blocked_reported_{}, unreachable_reported_{}, stuck_reported_{};
   double budget_{std::numeric_limits<double>::infinity()};  ///< Metres while the goal is unseen.
   double driven_{};                        ///< Metres of the budget since it was given or renewed.
