@@ -8,7 +8,7 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kBeforePeer = 2.5f;          ///< So near to a peer a path must lead past it, m.
+constexpr float kBeforeOthers = 2.5f;        ///< So near to a peer a path must lead past it, m.
 constexpr std::size_t kMaxPredicted = 8192;  ///< Maximum number of predicted places of movers.
 
 }  // namespace
@@ -70,19 +70,19 @@ Plan LocalNavigation::plan(const Target& target, const Pose2& pose, double stamp
   predict(tracker_.movers(), age, pose, moves, platform_, obstacles_);
   Plan plan = plan_path(target, pose, stamp_s, parts);
   plan.stamp_s = stamp_s;
-  if (plan.blocked || (target.kind == Target::Kind::goal && !peers.empty() && !plan.ends_at_goal &&
-                       !plan.arrived && !plan.nudge)) {
+  const bool others = !peers.empty() || !tracker_.movers().empty();
+  if (plan.blocked || (target.kind == Target::Kind::goal && others && !plan.arrived && !plan.nudge)) {
     const Hindrance found = hindrance(target, pose, parts, peers);
     // A path that does not lead past a robot of the team leads to and fro before it.
-    const bool aside = !plan.blocked && found.cause == Cause::peer && found.along < kBeforePeer &&
-                       plan.reached < found.along;
+    const bool aside = !plan.blocked && !plan.ends_at_goal && found.cause == Cause::peer &&
+                       found.along < kBeforeOthers && plan.reached < found.along;
     if (aside) {
       plan = {.clearance = plan.clearance};
       plan.stamp_s = stamp_s;
       plan.blocked = true;
       plan.reason = Reason::blocked;
     }
-    if (plan.blocked) plan.cause = found.cause;
+    if (plan.blocked || found.along < kBeforeOthers) plan.cause = found.cause;
   }
   plan.max_speed = std::min(plan.max_speed, speed_beside(tracker_.movers(), age, plan, platform_));
   return plan;

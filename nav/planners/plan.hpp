@@ -66,7 +66,7 @@ struct Plan {
   bool ends_at_goal{false};
   double end_speed{0};       ///< Permitted speed at the end of the path, m/s.
   double reached{0};         ///< How far along the straight line to the target the path leads, m.
-  Cause cause{Cause::none};  ///< Of a blocked plan: what is nearest on that line.
+  Cause cause{Cause::none};  ///< What is nearest on that line: of a blocked plan, or near by.
   bool reverse{false};       ///< The path is driven backwards; its poses are those of the body.
   bool turn_first{false};    ///< The path begins with a turn on the spot, however small it is.
   int turn{0};               ///< Side of the turn if the path starts behind: 1 left, -1 right, 0 either.

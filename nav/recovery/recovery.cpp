@@ -54,12 +54,19 @@ Target Recovery::target(Target target) const {
   return target;
 }
 
+void Recovery::restore() {
+  nudged_ = backed_up_ = false;
+  side_ = Side::none;
+  spent_at_.reset();
+  replans_ = 0;
+}
+
 // The next attempt, each of them once until the robot makes progress.
 void Recovery::try_next(const RecoveryInput& in) {
   leaves_ = in.held;
   if (!nudged_) return enter(RecoveryState::nudge, in);
   if (!backed_up_) return enter(RecoveryState::back_up, in);
-  if (replans_++ == params_.replans) return give_up(Reason::blocked, in);
+  if (replans_++ >= params_.replans) return give_up(Reason::blocked, in);
   replan_ = Replan{false};
   enter(RecoveryState::replan, in);
 }
@@ -75,12 +82,15 @@ bool Recovery::comes_no_nearer(const RecoveryInput& in) {
 
 RecoveryState Recovery::look(const RecoveryInput& in) {
   constexpr double kPause = 0.5;  // s: a longer interval was a pause.
-  if (state_ == RecoveryState::drive) driven_s_ += std::clamp(in.stamp_s - last_s_, 0.0, kPause);
+  if (state_ == RecoveryState::drive && !in.stands)
+    driven_s_ += std::clamp(in.stamp_s - last_s_, 0.0, kPause);
   last_s_ = in.stamp_s;
   if (in.goal != goal_) {
     goal_ = in.goal;
     route_ = 0;
+    least_ = std::numeric_limits<double>::infinity();
     rests_ = 0;
+    if (spent_at_ && (in.at - *spent_at_).norm() >= params_.elsewhere) restore();
     progress_ = ProgressChecker();
     nearest_ = in.left;
     nearest_since_ = driven_s_;
@@ -88,18 +98,13 @@ RecoveryState Recovery::look(const RecoveryInput& in) {
     enter(RecoveryState::drive, in);
   }
   const bool other_route = in.route != 0 && in.route != route_;
-  const bool longer = other_route && route_ != 0 && in.left > least_ + params_.progress;
+  const bool longer = other_route && in.left > least_ + params_.progress;
   if (other_route) {
     route_ = in.route;
     least_ = in.left;
   } else if (in.route != 0 && in.left < least_ - params_.progress) {
     least_ = in.left;
-    if (!spent_at_ || (in.at - *spent_at_).norm() >= params_.elsewhere) {
-      nudged_ = backed_up_ = false;
-      side_ = Side::none;
-      spent_at_.reset();
-      replans_ = rests_ = 0;
-    }
+    if (!spent_at_ || (in.at - *spent_at_).norm() >= params_.elsewhere) restore();
   }
   if (in.route == 0) route_ = 0;
   const bool stuck = in.route != 0 && progress_.stuck(in.left, longer, driven_s_);
@@ -155,8 +160,9 @@ RecoveryState Recovery::look(const RecoveryInput& in) {
       if (!hindered) {
         enter(RecoveryState::drive, in);
       } else if (!passes_by) {
-        try_next(in);
+        if (now - *blocked_since_ >= params_.blocked) try_next(in);
       } else {
+        blocked_since_ = now;
         if (lasts >= params_.reported - params_.blocked) reason_ = Reason::blocked;
         cause_ = in.cause;
         if (lasts >= params_.waits) {
@@ -181,6 +187,7 @@ RecoveryState Recovery::look(const RecoveryInput& in) {
         give_up(Reason::blocked, in);
       break;
     case RecoveryState::give_up:
+      if (in.unreachable) reason_ = Reason::goal_unreachable;
       if (in.route != 0 && reason_ != Reason::stuck && other_route) {
         enter(RecoveryState::drive, in);
       } else if (free && in.route == 0) {

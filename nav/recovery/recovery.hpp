@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -55,6 +56,7 @@ struct RecoveryInput {
   Cause cause{Cause::none};  ///< Of a blocked plan.
   Side side{Side::none};     ///< Of a nudge: where an obstacle nearly touches the robot.
   bool ends_at_goal{};       ///< The last plan, along the route, is free up to its target.
+  bool stands{};             ///< The robot is where it should be, or may not drive.
   Eigen::Vector2d at{0, 0};  ///< Position of the robot, odometry frame, m.
   double stamp_s{};          ///< s
 };
@@ -95,6 +97,7 @@ class Recovery {
 
  private:
   void enter(RecoveryState state, const RecoveryInput& in);
+  void restore();
   void try_next(const RecoveryInput& in);
   void give_up(Reason reason, const RecoveryInput& in);
   bool comes_no_nearer(const RecoveryInput& in);
@@ -115,9 +118,9 @@ class Recovery {
   bool nudged_{}, backed_up_{};
   bool leaves_{};  ///< The nudge is one from what the planner passes, but not the collision monitor.
   int replans_{}, rests_{};
-  std::optional<Eigen::Vector2d> spent_at_{};  ///< Where an attempt was made last, m.
-  double least_{};                             ///< Least rest of this route, m.
-  double nearest_{}, nearest_since_{};         ///< The same near the goal, in finer steps.
+  std::optional<Eigen::Vector2d> spent_at_{};              ///< Where an attempt was made last, m.
+  double least_{std::numeric_limits<double>::infinity()};  ///< Least rest of this route, m.
+  double nearest_{}, nearest_since_{};                     ///< The same near the goal, in finer steps.
   double rest_until_{};
   std::optional<Replan> replan_{};
   bool answered_{}, free_{};

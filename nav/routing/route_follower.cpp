@@ -85,14 +85,15 @@ void RouteFollower::advance(RoutePlanner& planner, const Eigen::Vector3d& place)
 void RouteFollower::look_around(RoutePlanner& planner, const RouteRequest& request) {
   bool end = false;
   Eigen::Vector3d there = point_at(route_.points, kReachAhead, end);
-  if (passage_ && (passage_->middle - request.place).head<2>().norm() < kAtPassage) {
+  const Eigen::Vector2d to = passage_ ? (passage_->middle - request.place).head<2>() : Eigen::Vector2d(0, 0);
+  if (passage_ && to.norm() < kAtPassage && to.dot(passage_->axis) > 0) {
     there = passage_->middle;
     end = false;
   }
   if (end) return;
   planner.block({there.x(), there.y(), request.place.z()}, request.stamp_s);
   Route other = planner.plan(request.place, request.goal);
-  if (!other.found() && request.replan->only_if_found) return planner.unblock();
+  if (!other.found() && request.replan->only_if_found) return planner.unblock_last();
   passage_.reset();
   take(std::move(other), false);
 }
@@ -206,7 +207,7 @@ RouteStep RouteFollower::along(RoutePlanner& planner, const Eigen::Vector3d& pla
 // A corner of angle a that is cut by c has the radius c cos(a/2) / (1 - cos(a/2)).
 double RouteFollower::end_speed(const RouteStep& step, const Eigen::Vector3d& place, bool pass) const {
   const double braking = 2 * params_.braking_share * max_acceleration_;
-  const double at_goal = pass ? std::sqrt(braking * params_.passing) : 0.0;
+  const double at_goal = pass ? params_.passing : 0.0;
   if (step.last) return std::min(at_goal, max_speed_);
   // The route behind the target, which lies beside it: from the corner after the nearest place on it.
   std::size_t after = 0;
@@ -258,7 +259,7 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
                      !(std::abs(goal_.z() - request.goal.z()) > kMoved);
   const bool moved = goal_id_ && (!level || (goal_ - request.goal).head<2>().norm() > kMoved);
   if (!goal_id_ || *goal_id_ != request.goal_id) clear();
-  if (!goal_id_ || moved) goal_ = request.goal;
+  if (!goal_id_) goal_ = request.goal;
   goal_id_ = request.goal_id;
   if (planner.map().used() == 0) return {.replanned = request.replan.has_value()};
   if (request.free) {
@@ -276,6 +277,7 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
     Route other = planner.plan(place, request.goal);
     const bool better =
         other.cost < route_.cost * params_.switch_ratio && other.cost < route_.cost - params_.gain;
+    if (other.found()) goal_ = request.goal;
     if (!usable || (other.found() && (better || moved)))
       take(std::move(other),
            route_.found() && !better && std::fabs(other.length - route_.length) < params_.gain);

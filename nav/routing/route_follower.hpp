@@ -23,7 +23,8 @@ struct RouteFollowerParams {
   double proof{2.0};          ///< A goal is unreachable after failing for this long, s, [0, 10].
   double cuts{0.3};           ///< A corner is cut by so much, m, (0, 2].
   double braking_share{0.7};  ///< Fraction of the platform's acceleration used for planned braking, (0, 1].
-  double passing{1.0};  ///< Length in which a robot that passes its goal could stop behind it, m, [0, 5].
+  /// Speed at a goal that the robot passes, m/s, [0, 5]: what lies behind it may be hidden.
+  double passing{0.6};
 };
 
 /// Where a robot is, and where it is to go. Frame of the map, m.

@@ -50,6 +50,8 @@ class RoutePlanner {
   /// Marks a place as blocked regardless of the scans, for RouteParams::block_time.
   void block(const Eigen::Vector3d& place, double stamp_s);
   bool has_blocked_places() const;
+  /// Takes the last block back.
+  void unblock_last() { map_.unblock_last(); }
   /// Ends all blocks; a place that is blocked again is so for longer.
   void unblock() { map_.expire(std::numeric_limits<double>::infinity()); }
   /// Sets the areas that no route leaves or enters, in the frame of the poses.

@@ -394,6 +394,14 @@ void SurfaceMap::block(double x, double y, double z, double now) {
   mark_place(place);
 }
 
+void SurfaceMap::unblock_last() {
+  if (places_.empty()) return;
+  BlockedPlace& place = places_.back();
+  place.active = false;
+  place.times = std::max(0, place.times - 1);
+  mark_place(place);
+}
+
 void SurfaceMap::expire(double now) {
   for (BlockedPlace& place : places_)
     if (place.active && place.until <= now) {

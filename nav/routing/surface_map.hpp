@@ -44,6 +44,8 @@ class SurfaceMap {
 
   /// Blocks a place for a while, and longer if it was blocked before.
   void block(double x, double y, double z, double now);
+  /// Takes the last block back, as if it had not been.
+  void unblock_last();
   /// Ends expired blocks.
   void expire(double now);
   const std::vector<BlockedPlace>& blocked_places() const { return places_; }

@@ -16,6 +16,7 @@ constexpr double kTurningSpeed = 0.05;    // Speed for a stick that only turns, 
 constexpr Duration kAnswerDeadline = 2s;  // Of planner and router; one that hangs is replaced earlier.
 constexpr double kBorderRange = 5.0;      // Of the areas' border that planner and monitor see, m.
 constexpr double kGoalMoved = 0.05;       // Shift of the goal by a correction of the map, m.
+constexpr double kCrawls = 0.05;          // A robot with a lower speed limit is to stand, m/s.
 constexpr double kTolerance = 0.25;       // Of the planners, m.
 constexpr double kTurned = 0.15;          // Greatest error of a heading that was asked for, rad.
 
@@ -41,17 +42,19 @@ Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const
       fence_(params_.platform) {}
 
 void Navigation::accept(MuxKey, const Motion& motion, Time now) {
-  if (motion == motion_) {
-    motion_ = motion;  // The number of a goal may differ.
-    return;
-  }
   const bool other_kind = motion.index() != motion_.index();
   const auto* go = std::get_if<GoTo>(&motion);
   const auto* before = std::get_if<GoTo>(&motion_);
-  const bool same_goal = go && before && go->id != 0 && go->id == before->id;
+  const bool same_number = go && before && go->id == before->id;
+  if (motion == motion_ && (!go || same_number)) return;
+  const bool same_goal = same_number && go->id != 0;
   if (!same_goal) {
-    if (go) ++goal_generation_;
-    if (go && before && go->continues && step_on(now))
+    const bool continues = go && before && go->continues && step_on(now);
+    if (go) {
+      ++goal_generation_;
+      outputs_.progress({});  // What was reported of the goal before says nothing about this one.
+    }
+    if (continues)
       continued_ = now;
     else
       step_.reset();
@@ -214,7 +217,7 @@ nav::Target Navigation::target() const {
     if (target.kind == nav::Target::Kind::none && recovery_.gave_up()) target = last_target_;
     target.speed = go->max_speed;
     if (target.last) target.tolerance = go->tolerance;
-    return recovery_.target(target);
+    return target;
   }
   const auto* guidance = std::get_if<Guidance>(&motion_);
   if (!guidance || guidance->stick.zero()) return {};
@@ -325,6 +328,7 @@ void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now, st
 
 void Navigation::routed(const RouteJob& job, const Result<nav::RouteStep>& step) {
   routing_ = false;
+  if (!step && job.generation == goal_generation_ && job.replan) replan_ = job.replan;
   if (!step || job.odom_epoch != frames_.odom_epoch()) return;
   mapped_ = job.made;
   const auto* go = std::get_if<GoTo>(&motion_);
@@ -341,8 +345,11 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   auto job = std::make_shared<PlanJob>();
   job->scan = std::move(scan);
   job->target = target();
-  if (job->target.kind == nav::Target::Kind::goal && std::holds_alternative<GoTo>(motion_))
-    last_target_ = job->target;
+  job->state = recovery_.state();
+  if (std::holds_alternative<GoTo>(motion_)) {
+    if (job->target.kind == nav::Target::Kind::goal) last_target_ = job->target;
+    job->target = recovery_.target(job->target);
+  }
   job->peers = peers_;
   job->pose = frames_.T_odom_base().planar();
   if (is_bound() && !fence_.empty()) job->border = fence_.border(frames_, kBorderRange);
@@ -392,6 +399,7 @@ void Navigation::recover(const PlanJob& job, const nav::Plan& plan, bool held) {
   in.cause = plan.cause;
   in.side = plan.side;
   in.ends_at_goal = plan.ends_at_goal;
+  in.stands = plan.arrived || speed_limit_ < kCrawls;
   in.at = job.pose.position();
   in.stamp_s = seconds(job.made.time_since_epoch());
   const nav::RecoveryState before = recovery_.state();
@@ -416,15 +424,11 @@ void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
   using State = nav::RecoveryState;
   const auto* step = step_on(now());
   if (router_ && !step) return;
-  const auto fits = [&] {
-    const nav::Target wanted = recovery_.target({.kind = Kind::goal});
-    return job.target.kind == wanted.kind && job.target.nudges == wanted.nudges;
-  };
-  // A plan for the state before says nothing about this one.
-  const bool answers = fits() || job.target.kind == Kind::none;
   const bool held = held_.held(seconds(now().time_since_epoch()), seconds(params_.held_after));
-  if (answers) recover(job, plan, held);
-  const bool drives = fits() && !recovery_.gave_up() && recovery_.state() != State::replan &&
+  // A plan for the state before says nothing about this one.
+  if (job.state == recovery_.state()) recover(job, plan, held);
+  const bool drives = job.state == recovery_.state() && !recovery_.gave_up() &&
+                      recovery_.state() != State::replan &&
                       (!router_ || step->route != 0 || job.target.kind == Kind::leave);
   follow(drives ? plan : nav::Plan{}, job.made);
 

@@ -7,6 +7,7 @@
 #include "core/component/component.hpp"
 #include "core/geometry/scan_points.hpp"
 #include "nav/local_navigation.hpp"
+#include "nav/recovery/recovery.hpp"
 
 namespace adit::agent {
 
@@ -36,8 +37,9 @@ struct Scan {
 /// The input of one planning cycle.
 struct PlanJob {
   std::shared_ptr<Scan> scan{};
-  nav::Target target{};  ///< Kind none: the scan enters the map, and nothing is planned.
-  Pose2 pose{};          ///< Odometry frame.
+  nav::RecoveryState state{};  ///< Of the recovery, for the caller.
+  nav::Target target{};        ///< Kind none: the scan enters the map, and nothing is planned.
+  Pose2 pose{};                ///< Odometry frame.
   /// Points along the border of forbidden ground, odometry frame, m.
   std::vector<Eigen::Vector2f> border{};
   std::vector<Eigen::Vector3f> peers{};  ///< Centres and radii of the other robots, odometry frame, m.

@@ -128,7 +128,9 @@ TEST_F(RecoveryTest, WhatStoppedMovingIsAnObstacle) {
   in.cause = Cause::peer;
   look(10);
   in.cause = Cause::fixed;
-  EXPECT_NE(look(0.2), RecoveryState::wait);
+  EXPECT_EQ(look(0.2), RecoveryState::wait) << "not by one look";
+  look(1.2);
+  EXPECT_NE(recovery.state(), RecoveryState::wait);
 }
 
 TEST_F(RecoveryTest, WithoutARouteItSaysSoWithinThreeSeconds) {
@@ -175,6 +177,24 @@ TEST_F(RecoveryTest, ToAndFroWithoutProgressIsStuckHoweverOftenTheGoalMovesWithT
   }
   EXPECT_TRUE(recovery.stuck());
   EXPECT_LT(now, 50);
+}
+
+TEST_F(RecoveryTest, StandingOnPurposeIsNeitherStuckNorAnEnd) {
+  in.left = 0.2;
+  in.stands = true;
+  EXPECT_EQ(look(120), RecoveryState::drive);
+}
+
+TEST_F(RecoveryTest, AStartThatIsBlockedIsLeftOrNamed) {
+  in.route = 0;
+  in.start_blocked = true;
+  in.side = Side::left;
+  EXPECT_EQ(look(1.2), RecoveryState::nudge);
+  EXPECT_EQ(recovery.target({}).kind, Target::Kind::leave);
+  in.blocked = true;
+  look(4);
+  EXPECT_TRUE(recovery.gave_up());
+  EXPECT_EQ(recovery.reason(), Reason::start_in_collision);
 }
 
 TEST_F(RecoveryTest, NearItsGoalARobotThatComesNoNearerEnds) {

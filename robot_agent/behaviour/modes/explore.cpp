@@ -94,8 +94,10 @@ void ExploreMode::answered(const nav::ExploreStep& step) {
     goal_.reset();
     return;
   }
-  if (!goal_ || (*goal_ - *step.goal).norm() > 0.01) {
-    goal_ = *step.goal;
+  // A correction of the map moves a goal a little.
+  const bool other = !goal_ || (*goal_ - *step.goal).norm() > kOtherGoal;
+  goal_ = *step.goal;
+  if (other) {
     ++goal_id_;
     navigated_ = {};
   }

@@ -15,6 +15,7 @@ class ExploreMode : public ModeModule {
   static constexpr Duration kAskPeriod = 200ms;  ///< The router takes a scan as often.
   static constexpr Duration kAnswerLost = 2s;    ///< A later answer is not awaited.
   static constexpr double kFar = 16.0;           ///< m
+  static constexpr double kOtherGoal = 0.5;      ///< From here on a place is another goal, m.
 
   explicit ExploreMode(ModeContext context) : context_(std::move(context)) {}
   /// Robots that fly, and those without a router, have no explorer.
