@@ -147,7 +147,9 @@ struct BehaviourSent {
   std::string mode{};
   bool stopped{};
   bool has_goal{};
+  bool drives_to_goal{};  ///< It has not reached it, and its mode uses it.
   std::uint32_t goal_id{};
+  Reason reason{Reason::none};        ///< Why it does not move.
   std::vector<std::string> convoy{};  ///< The robots of its convoy in their order.
   int exploration{};                  ///< Value of radio::ExplorationPhase.
 };
@@ -161,6 +163,7 @@ struct NotificationSent {
   std::string code{};
   std::string to{};  ///< Operator; empty: all.
   std::uint64_t seq{};
+  Reason reason{Reason::none};
 };
 /// cmd_vel, from the agent or from its parent process.
 struct VelocitySent {

@@ -207,13 +207,22 @@ Decoded decode_sent(std::string_view topic, std::string_view type, std::span<con
     if (!b) return std::nullopt;
     return DecodedSample{
         b->robot(),
-        BehaviourSent{b->mode(), b->stopped(), b->goal_state() != radio::GOAL_NONE, b->goal_id(), b->convoy(),
-                      b->exploration().empty() ? 0 : static_cast<int>(b->exploration().front().phase())}};
+        BehaviourSent{
+            .mode = b->mode(),
+            .stopped = b->stopped(),
+            .has_goal = b->goal_state() != radio::GOAL_NONE,
+            .drives_to_goal = b->goal_state() == radio::GOAL_ACTIVE || b->goal_state() == radio::GOAL_BLOCKED,
+            .goal_id = b->goal_id(),
+            .reason = static_cast<Reason>(b->reason()),
+            .convoy = b->convoy(),
+            .exploration =
+                b->exploration().empty() ? 0 : static_cast<int>(b->exploration().front().phase())}};
   }
   if (is(topic, topics::kNotification)) {
     const auto n = read<radio::Notification>(cdr);
     if (!n) return std::nullopt;
-    return DecodedSample{n->robot(), NotificationSent{n->code(), n->operator_name(), n->seq()}};
+    return DecodedSample{n->robot(), NotificationSent{n->code(), n->operator_name(), n->seq(),
+                                                      static_cast<Reason>(n->reason())}};
   }
   return std::nullopt;
 }

@@ -126,6 +126,10 @@ std::string mismatch(const NoticeExpectation& e, const Evidence& evidence) {
   return evidence.notified(e.by, e.code, e.robot) ? std::string() : e.by + " was not notified";
 }
 
+std::string mismatch(const ReasonExpectation& e, const Evidence& evidence) {
+  return evidence.reported(e.robot, e.reason) ? std::string() : e.robot + " did not say so";
+}
+
 using Outline = std::array<Eigen::Vector2d, 4>;
 
 Outline outline(const RobotSpec& robot, const Pose2& pose) {
@@ -243,6 +247,25 @@ std::vector<Duration> Expectations::instants() const {
   return out;
 }
 
+std::string Expectations::watch(const ProgressExpectation& e, Duration now, const Evidence& evidence,
+                                State& state) const {
+  constexpr double kProgress = 0.3;  // m
+  for (const std::string& robot : e.robots) {
+    const RobotWord& word = evidence.word(robot);
+    const Eigen::Vector2d place = evidence.pose(robot).position();
+    const auto [standing, begins] = state.stands.try_emplace(robot, Standing{place, now});
+    Standing& last = standing->second;
+    if (begins || !word.drives_to_goal || word.stopped || (place - last.at).norm() > kProgress)
+      last = {place, now};
+    if (now - last.since <= e.within) continue;
+    char text[96];
+    std::snprintf(text, sizeof text, " stays at %.2f %.2f from %.1f s on", last.at.x(), last.at.y(),
+                  seconds(last.since));
+    return robot + text;
+  }
+  return {};
+}
+
 void Expectations::judge(Duration now, const Evidence& evidence) {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const Expectation& e = scenario_.expectations[i];
@@ -281,6 +304,11 @@ void Expectations::judge(Duration now, const Evidence& evidence) {
         state.settled = true;
         break;
       }
+    }
+    if (const auto* reason = std::get_if<ReasonExpectation>(&e.what)) found = mismatch(*reason, evidence);
+    if (const auto* progress = std::get_if<ProgressExpectation>(&e.what)) {
+      state.result.found = watch(*progress, now, evidence, state);
+      state.settled = !state.result.found.empty();
     }
     if (const auto* place = std::get_if<PlaceExpectation>(&e.what)) {
       found = mismatch(*place, scenario_, evidence);

@@ -21,6 +21,8 @@ struct Evidence {
   std::function<std::size_t(const std::string& robot)> index{};
   /// Whether a robot notified an operator of a matter.
   std::function<bool(const std::string& by, const std::string& code, const std::string& robot)> notified{};
+  /// Whether a robot gave that reason.
+  std::function<bool(const std::string& robot, Reason reason)> reported{};
   /// How right the map of that operator's station is; nothing while it has none.
   std::function<std::optional<MapJudgement>(const std::string& by)> map{};
   std::map<std::string, Reason> last_answer{};    ///< By operator.
@@ -48,12 +50,20 @@ class Expectations {
     Eigen::Vector2d truth{0, 0};
     Duration judged{-1};  ///< When it sent what it had said of it.
   };
+  /// Where a robot with a goal was when it last made progress.
+  struct Standing {
+    Eigen::Vector2d at{0, 0};
+    Duration since{};
+  };
   struct State {
     bool settled{};
     ExpectationResult result{};
-    std::optional<Eigen::Vector2d> start{};   ///< Where the robot was when the time began.
-    std::map<std::string, PoseSeen> poses{};  ///< By robot.
+    std::optional<Eigen::Vector2d> start{};    ///< Where the robot was when the time began.
+    std::map<std::string, PoseSeen> poses{};   ///< By robot.
+    std::map<std::string, Standing> stands{};  ///< By robot.
   };
+  std::string watch(const ProgressExpectation& e, Duration now, const Evidence& evidence, State& state) const;
+
   const Scenario& scenario_;
   std::vector<State> states_;
 };

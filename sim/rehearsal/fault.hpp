@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -139,6 +140,12 @@ struct Cover {
   std::string robot{};
   Duration duration{};
 };
+/// A solid box appears as soon as neither a person nor a robot is in it, as a door that shuts: see
+/// Simulation::close.
+struct Close {
+  std::array<double, 6> box{};  ///< x0, x1, y0, y1, z0, z1, world frame, m.
+  Duration duration{};
+};
 /// A second computer with the name of that robot comes on the air: an agent with a disk of its own and no
 /// driver.
 struct Twin {
@@ -150,7 +157,7 @@ struct Fault {
   Duration at{};
   std::variant<Crash, Hang, CutLink, DegradeLink, Partition, Reorder, Duplicate, ClockJump, SensorSilent,
                StuckDrive, DiskFull, Forge, StuckStick, Find, Steer, OdometryReset, Twin, Slip, TurnSlip,
-               DriverClock, NoStamp, DriverRestart, LoseColumns, Cover>
+               DriverClock, NoStamp, DriverRestart, LoseColumns, Cover, Close>
       what{};
 };
 

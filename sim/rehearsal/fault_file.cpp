@@ -120,6 +120,17 @@ Find read_find(const Node& node, const Scenario& scenario) {
   return out;
 }
 
+Close read_close(const Node& node) {
+  Close out;
+  const std::vector<double> v = node.numbers("close", 6, 6, config::within(-1e4, 1e4));
+  if (v.size() == 6) std::copy(v.begin(), v.end(), out.box.begin());
+  if (v.size() == 6 && !(v[0] < v[1] && v[2] < v[3] && v[4] < v[5]))
+    node.child("close").fail(Reason::bad_argument,
+                             "expected [x0, x1, y0, y1, z0, z1] in metres with x0 < x1, y0 < y1, z0 < z1");
+  out.duration = read_length(node);
+  return out;
+}
+
 Steer read_steer(const Node& node, const Scenario& scenario) {
   Steer out;
   out.robot = read_robot(node, "steers", scenario);
@@ -145,7 +156,7 @@ void read_link_fault(const Node& fault, const std::string& kind, const Scenario&
 Fault read_fault(const Node& node, const Scenario& scenario) {
   static const std::vector<std::string> others{
       "crash", "hang",      "cut",   "degrade", "partition", "reorder",        "duplicate", "clock_jump",
-      "stuck", "disk_full", "forge", "finds",   "steers",    "odometry_reset", "twin"};
+      "stuck", "disk_full", "forge", "finds",   "steers",    "odometry_reset", "twin",      "close"};
   std::vector<std::string> kinds = others;
   const auto& of_drivers = driver_fault_kinds();
   kinds.insert(kinds.end(), of_drivers.begin(), of_drivers.end());
@@ -184,6 +195,8 @@ Fault read_fault(const Node& node, const Scenario& scenario) {
     fault.what = read_steer(node, scenario);
   } else if (kind == "odometry_reset") {
     fault.what = OdometryReset{read_robot(node, "odometry_reset", scenario)};
+  } else if (kind == "close") {
+    fault.what = read_close(node);
   } else if (kind == "twin") {
     fault.what = Twin{read_robot(node, "twin", scenario), read_length(node)};
   } else {

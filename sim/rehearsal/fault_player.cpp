@@ -133,6 +133,11 @@ void FaultPlayer::play(const Cover& fault) {
   during(fault.duration, [to = &driver(fault.robot)](bool begins) { to->cover(begins); });
 }
 
+void FaultPlayer::play(const Close& fault) {
+  const std::size_t number = stage_.simulation.close(fault.box);
+  later(fault.duration, [this, number] { stage_.simulation.open(number); });
+}
+
 void FaultPlayer::play(const DiskFull& fault) {
   RobotMachine* robot = robots_.at(fault.robot).get();
   during(fault.duration, [robot](bool begins) { robot->fill_disk(begins); });

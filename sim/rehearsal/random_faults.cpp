@@ -160,11 +160,25 @@ class Draw {
       out.what = DiskFull{robot(), length(1.0, 10.0)};
     } else if (kind == "forge") {
       out.what = Forge{station(), robot(), length(1.0, 5.0)};
+    } else if (kind == "close") {
+      out.what = close();
     } else if (driver_kinds().contains(kind)) {
       of_driver(kind, out);
     } else {
       out.what = StuckStick{station(), robot(), length(0.5, 5.0)};
     }
+  }
+
+  // A door, a gate or a crate where the robots drive.
+  Close close() {
+    const Pose2& start = pick(scenario_.robots, random_).pose;
+    const Eigen::Vector2d reach = scenario_.random ? scenario_.random->reach : RandomScript{}.reach;
+    const double x = start.x + between(-reach.x(), reach.x()), y = start.y + between(-reach.y(), reach.y());
+    const double along = between(0.1, 0.8), across = between(0.1, 0.8);
+    Close out{{x - along, x + along, y - across, y + across, 0.0, 2.0}, {}};
+    for (double& value : out.box) value = round_ms(value);
+    out.duration = length(1.0, 15.0);
+    return out;
   }
 
   // One of the robots whose faults of drivers are drawn; `drives`: that flies not.
@@ -259,7 +273,7 @@ std::vector<std::string> random_fault_kinds(const Scenario& scenario) {
   static const std::vector<std::string> kinds{"crash",      "crash_component", "hang",        "cut",
                                               "degrade",    "partition",       "reorder",     "duplicate",
                                               "clock_jump", "sensor_silent",   "stuck_drive", "disk_full",
-                                              "forge",      "stuck_stick"};
+                                              "forge",      "stuck_stick",     "close"};
   std::vector<std::string> all = kinds;
   if (!perceives(scenario)) return all;
   const bool drives = std::any_of(scenario.robots.begin(), scenario.robots.end(), [](const RobotSpec& robot) {

@@ -245,6 +245,9 @@ class Run {
     out.notified = [this](const std::string& by, const std::string& code, const std::string& robot) {
       return witness_.notified(by, code, robot);
     };
+    out.reported = [this](const std::string& robot, Reason reason) {
+      return witness_.reported(robot, reason);
+    };
     out.map = [this](const std::string& by) { return judged_map(by); };
     for (const auto& [id, station] : stations_) {
       if (const auto answer = station->last_answer()) out.last_answer[id] = *answer;

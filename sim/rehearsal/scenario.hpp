@@ -121,6 +121,17 @@ struct NoticeExpectation {
   std::string code{};
   std::string robot{};
 };
+/// The robot gave that reason: it refused a command with it, notified an operator of it, or named it as why
+/// it does not move.
+struct ReasonExpectation {
+  std::string robot{};
+  Reason reason{Reason::none};
+};
+/// No robot that drives to a goal, and was not stopped, stays within 0.3 m for longer.
+struct ProgressExpectation {
+  Duration within{};
+  std::vector<std::string> robots{};
+};
 struct NoCollision {
   bool caused{};  ///< Only contacts caused by a robot, see Collision.
 };
@@ -162,7 +173,7 @@ struct Expectation {
   std::variant<StateExpectation, NearExpectation, AnswerExpectation, FindingsExpectation, NoCollision,
                ExploredExpectation, RepeatExpectation, AtLeast, ConvoyExpectation, InLineExpectation,
                GapExpectation, StillExpectation, NoticeExpectation, PlaceExpectation, MapExpectation,
-               PoseWithinExpectation>
+               PoseWithinExpectation, ReasonExpectation, ProgressExpectation>
       what{};
   int line{};          ///< In the scenario file.
   std::string text{};  ///< As written.

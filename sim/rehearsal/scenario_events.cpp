@@ -78,24 +78,31 @@ ExploredExpectation read_explored(const Node& node, const Scenario& scenario) {
 
 /// An expectation of what holds all the time.
 void read_always(const Node& node, const Scenario& scenario, Expectation& out) {
-  const auto which =
-      node.choice("always", {"no_collision", "no_collision_caused", "inside", "outside", "pose_within"});
+  const auto which = node.choice(
+      "always", {"no_collision", "no_collision_caused", "inside", "outside", "pose_within", "progress"});
   if (which < 2) {
     out.what = NoCollision{which == 1};
     return;
   }
-  if (which == 4) {
-    PoseWithinExpectation within{node.number("m", config::positive_up_to(1e4)),
-                                 read_named_robots(node, scenario)};
-    if (within.robots.empty())
-      for (const RobotSpec& robot : scenario.robots) within.robots.push_back(robot.id);
-    out.what = within;
-    return;
-  }
-  PlaceExpectation place{which == 2, read_area(node), read_named_robots(node, scenario)};
-  if (place.robots.empty())
-    for (const RobotSpec& robot : scenario.robots) place.robots.push_back(robot.id);
-  out.what = place;
+  std::vector<std::string> robots = read_named_robots(node, scenario);
+  if (robots.empty())
+    for (const RobotSpec& robot : scenario.robots) robots.push_back(robot.id);
+  if (which == 4)
+    out.what = PoseWithinExpectation{node.number("m", config::positive_up_to(1e4)), robots};
+  else if (which == 5)
+    out.what = ProgressExpectation{from_seconds(node.number("within", config::positive_up_to(kLongestTime))),
+                                   robots};
+  else
+    out.what = PlaceExpectation{which == 2, read_area(node), robots};
+}
+
+Reason read_reason(const Node& node, const char* key) {
+  Reason out{Reason::none};
+  const std::string text = node.text(key);
+  if (node.has(key) && !reason_from_name(text, out))
+    node.child(key).fail(Reason::bad_argument,
+                         "expected the name of a reason (locked, not_holder, ...), not " + text);
+  return out;
 }
 
 std::vector<std::string> read_robots(const Node& node, const char* key, const Scenario& scenario) {
@@ -168,6 +175,8 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
   } else if (node.has("by_operator") && node.has("notified")) {
     out.what = NoticeExpectation{read_station(node, "by_operator", scenario), node.text("notified"),
                                  read_robot(node, "robot", scenario)};
+  } else if (node.has("told")) {
+    out.what = ReasonExpectation{read_robot(node, "robot", scenario), read_reason(node, "told")};
   } else if (node.has("convoy")) {
     const std::string leader = read_robot(node, "convoy", scenario);
     ConvoyExpectation convoy{read_robots(node, "order", scenario)};
@@ -183,13 +192,7 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
     }
     out.what = line;
   } else if (node.has("by_operator")) {
-    AnswerExpectation answer{read_station(node, "by_operator", scenario), Reason::none};
-    const std::string reason = node.text("refused");
-    if (node.has("refused") && !reason_from_name(reason, answer.refused))
-      node.child("refused").fail(
-          Reason::bad_argument,
-          "expected the name of a reason (locked, not_holder, ...; none: accepted), not " + reason);
-    out.what = answer;
+    out.what = AnswerExpectation{read_station(node, "by_operator", scenario), read_reason(node, "refused")};
   } else {
     read_robot_expectation(node, scenario, out);
   }

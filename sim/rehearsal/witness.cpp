@@ -79,6 +79,8 @@ void Witness::sent(const wire::SampleEvent& frame) {
     said.stopped = behaviour->stopped;
     said.convoy = behaviour->convoy;
     said.exploration = behaviour->exploration;
+    said.drives_to_goal = behaviour->drives_to_goal;
+    reported_.insert({robot, behaviour->reason});
     said.heard = true;
   }
   if (const auto* state = std::get_if<StateSent>(&decoded->event)) {
@@ -92,11 +94,15 @@ void Witness::sent(const wire::SampleEvent& frame) {
     said.authority = status->authority;
   }
   if (const auto* notice = std::get_if<NotificationSent>(&decoded->event)) {
+    reported_.insert({robot, notice->reason});
     if (notified_.size() < kMaxEvents) notified_.insert({notice->to, notice->code, robot});
     if (notifications_.size() < kMaxEvents) notifications_.push_back({frame.at, robot, notice->code});
     if (notice->code == "unreachable") note(robot, frame.at, "no way to its goal");
   }
-  if (const auto* ack = std::get_if<AckSent>(&decoded->event)) count(robot, *ack);
+  if (const auto* ack = std::get_if<AckSent>(&decoded->event)) {
+    if (!ack->accepted) reported_.insert({robot, ack->reason});
+    count(robot, *ack);
+  }
   checker_.observe(robot, frame.at, decoded->event);
 }
 

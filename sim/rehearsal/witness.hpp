@@ -25,7 +25,8 @@ struct RobotWord {
   std::string mode{};
   Authority authority{};
   bool stopped{};
-  int exploration{};  ///< As in BehaviourSent.
+  int exploration{};      ///< As in BehaviourSent.
+  bool drives_to_goal{};  ///< As in BehaviourSent.
   bool heard{};
   std::optional<Pose3> pose{};        ///< Its own estimate, map frame.
   Duration pose_sent{};               ///< When it sent that, virtual time.
@@ -72,6 +73,8 @@ class Witness {
   bool notified(const std::string& by, const std::string& code, const std::string& robot) const {
     return notified_.contains({by, code, robot}) || notified_.contains({{}, code, robot});
   }
+  /// Whether a robot gave that reason: in a refusal, a notification or its behaviour.
+  bool reported(const std::string& robot, Reason reason) const { return reported_.contains({robot, reason}); }
   std::string digest() const { return digest_.text(); }
 
  private:
@@ -98,6 +101,7 @@ class Witness {
   std::vector<Goal> goals_{};
   std::vector<TimedEvent> events_{}, notifications_{};
   std::set<std::tuple<std::string, std::string, std::string>> notified_{};  ///< Operator, code, robot.
+  std::set<std::pair<std::string, Reason>> reported_{};
   Digest digest_{};
 };
 

@@ -122,7 +122,50 @@ std::pair<double, double> Simulation::extent(const Robot& robot) {
   return {z - lean, z + platform.height + lean};
 }
 
+std::size_t Simulation::close(const Box& box) {
+  shutters_.push_back({box, true, false});
+  return shutters_.size() - 1;
+}
+
+// What is no higher than a step stops no robot that drives.
+bool Simulation::level(const Robot& robot, const Shutter& shutter) const {
+  const Platform& platform = robot.body.platform();
+  const double z = robot.truth.pose.position.z();
+  const auto [low, high] =
+      platform.flies() ? extent(robot) : std::pair(z + platform.step, z + platform.height);
+  return shutter.box[4] < high && shutter.box[5] > low;
+}
+
+bool Simulation::is_clear(const Shutter& shutter) const {
+  constexpr double kNotices = 0.5, kStep = 0.1;  // s
+  const Rectangle outline = shutter.outline();
+  for (const Person& person : people_)
+    if (overlap(person.body(), outline)) return false;
+  return std::none_of(robots_.begin(), robots_.end(), [&](const Robot& robot) {
+    if (!level(robot, shutter)) return false;
+    const Platform& platform = robot.body.platform();
+    const Twist2& twist = robot.body.twist();
+    const double stops = kNotices + std::hypot(twist.vx, twist.vy) / platform.max_acceleration;
+    for (double ahead = 0; ahead < stops; ahead += kStep)
+      if (overlap(footprint(platform, robot.body.pose() * arc(twist, ahead)), outline)) return true;
+    return false;
+  });
+}
+
+std::vector<BodyBox> Simulation::shutter_bodies() const {
+  std::vector<BodyBox> bodies;
+  for (const Shutter& shutter : shutters_) {
+    if (!shutter.stands) continue;
+    const Rectangle outline = shutter.outline();
+    bodies.push_back(
+        {outline.pose, shutter.box[4], outline.length, outline.width, shutter.box[5] - shutter.box[4]});
+  }
+  return bodies;
+}
+
 bool Simulation::touches_world(const Robot& robot, const Rectangle& body) const {
+  for (const Shutter& shutter : shutters_)
+    if (shutter.stands && level(robot, shutter) && overlap(body, shutter.outline())) return true;
   if (!robot.body.platform().flies()) return robot.ground->touches(body);
   const auto [low, high] = extent(robot);
   return space_.touches(body, low, high);
@@ -215,6 +258,8 @@ void Simulation::walk(std::size_t index) {
     if (distance(person.body(), footprint(body.platform(), body.pose())) > apart) touching.reset();
   }
   const Rectangle next = person.next(dt);
+  for (const Shutter& shutter : shutters_)
+    if (shutter.stands && overlap(next, shutter.outline())) return person.wait();
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     if (!level(n, person)) continue;
     const Rectangle body = footprint(robots_[n].body.platform(), robots_[n].body.pose());
@@ -299,6 +344,9 @@ void Simulation::measure(std::size_t index) {
           std::min(clearance, distance(body, footprint(robots_[n].body.platform(), robots_[n].body.pose())));
   for (const Person& person : people_)
     if (level(index, person)) clearance = std::min(clearance, distance(body, person.body()));
+  for (const Shutter& shutter : shutters_)
+    if (shutter.stands && level(robot, shutter))
+      clearance = std::min(clearance, distance(body, shutter.outline()));
   robot.truth.min_clearance = clearance;
 }
 
@@ -333,6 +381,7 @@ std::shared_ptr<const LidarPattern> Simulation::lidar_of(const Platform& platfor
 void Simulation::step() {
   now_ += params_.step;
   ++steps_;
+  for (Shutter& shutter : shutters_) shutter.stands = shutter.wanted && (shutter.stands || is_clear(shutter));
   for (std::size_t n = 0; n < people_.size(); ++n) walk(n);
   for (std::size_t n = 0; n < robots_.size(); ++n) move(n);
   for (std::size_t n = 0; n < robots_.size(); ++n) measure(n);
@@ -348,7 +397,7 @@ PointCloud Simulation::ScanJob::compute() const {
 
 Simulation::ScanJob Simulation::scan(std::size_t index) const {
   const Eigen::Vector3d mounted = robots_[index].body.platform().lidar_origin();
-  ScanJob job{world_, robots_[index].lidar, {}, robots_[index].truth.pose, mounted, 0};
+  ScanJob job{world_, robots_[index].lidar, shutter_bodies(), robots_[index].truth.pose, mounted, 0};
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     if (n == index) continue;
     const Platform& platform = robots_[n].body.platform();

@@ -96,6 +96,14 @@ class Simulation {
   void command(std::size_t robot, const Twist2& wanted) { robots_[robot].body.command(wanted); }
   /// Faults between a robot's drive and the ground, which may begin and end between two steps.
   Traction& traction(std::size_t robot) { return robots_[robot].traction; }
+  /// A solid box, as a door that shuts: it stands from the first step on in which neither a person nor a
+  /// robot is in it, and no robot must brake hard for it. Height counts; for people it is a wall. Returns its
+  /// number.
+  std::size_t close(const Box& box);
+  /// The box is gone.
+  void open(std::size_t number) { shutters_.at(number) = {}; }
+  /// Whether it stands.
+  bool closed(std::size_t number) const { return shutters_.at(number).stands; }
   /// Its odometry begins again at `origin` of its frame, as after a restart of its driver.
   void reset_odometry(std::size_t robot, const Pose2& origin = {}) { robots_[robot].odometry.reset(origin); }
   const Truth& truth(std::size_t robot) const { return robots_[robot].truth; }
@@ -149,6 +157,14 @@ class Simulation {
   };
   Simulation(std::shared_ptr<const World> world, const SimulationParams& params);
 
+  /// A box that stands in the world, or waits until it can.
+  struct Shutter {
+    Box box{};
+    bool wanted{}, stands{};
+    Rectangle outline() const {
+      return {{(box[0] + box[1]) / 2, (box[2] + box[3]) / 2, 0}, box[1] - box[0], box[3] - box[2]};
+    }
+  };
   static Rectangle footprint(const Platform& platform, const Pose2& pose);
   Result<void> add(const RobotStart& start);
   std::shared_ptr<const LidarPattern> lidar_of(const Platform& platform, const LidarConfig& lidar) const;
@@ -166,7 +182,11 @@ class Simulation {
   /// Whether two robots' bodies share a height; a flying one passes over another.
   bool level(std::size_t a, std::size_t b) const;
   bool level(std::size_t robot, const Person& person) const;
+  bool level(const Robot& robot, const Shutter& shutter) const;
+  bool is_clear(const Shutter& shutter) const;
   bool touches_world(const Robot& robot, const Rectangle& footprint) const;
+  /// The boxes that stand, as lidars see them.
+  std::vector<BodyBox> shutter_bodies() const;
   /// Heights that a flying body takes up, m, world: leaning it takes up more.
   static std::pair<double, double> extent(const Robot& robot);
   void lift(Robot& robot);
@@ -186,6 +206,7 @@ class Simulation {
   std::vector<Robot> robots_{};
   std::vector<Collision> collisions_{};
   std::vector<Person> people_{};
+  std::vector<Shutter> shutters_{};
   std::vector<std::deque<Pose2>> walked_{};             ///< Realistic, by person: as Realism::history.
   std::vector<std::optional<std::size_t>> touching_{};  ///< By person: the robot walked into.
 };

@@ -107,7 +107,7 @@ SweepJob Simulation::sweep(std::size_t index, std::size_t of) const {
   if (of > 0) job.seed = derive_seed(job.seed, kLidarParts + of);
   for (const Pose3& T_world_base : real.history)
     job.T_world_lidar.push_back(T_world_base * lidar.T_base_lidar);
-  job.others.resize(sweep_steps());
+  job.others.assign(sweep_steps(), shutter_bodies());
   for (std::size_t interval = 0; interval < job.others.size(); ++interval) {
     std::vector<BodyBox>& others = job.others[interval];
     for (std::size_t n = 0; n < robots_.size(); ++n) {

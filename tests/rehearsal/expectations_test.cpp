@@ -70,6 +70,36 @@ TEST(Expectations, ReportsAStationThatIsDeadOrListsOthers) {
   EXPECT_EQ(d.finish().found, "it has 3");
 }
 
+TEST(Expectations, ARobotGivesAReason) {
+  Case c({When::by, 10s, ReasonExpectation{"r1", Reason::blocked}, 1, ""});
+  bool said = false;
+  c.evidence.reported = [&](const std::string& robot, Reason reason) {
+    return said && robot == "r1" && reason == Reason::blocked;
+  };
+  c.expectations->judge(1s, c.evidence);
+  EXPECT_FALSE(c.expectations->all_settled());
+  said = true;
+  c.expectations->judge(2s, c.evidence);
+  EXPECT_TRUE(c.finish().ok);
+}
+
+TEST(Expectations, ARobotWithAGoalMakesProgress) {
+  const auto found = [](double speed, bool goal, bool stopped) {
+    Case c({When::always, {}, ProgressExpectation{5s, {"r1"}}, 1, ""});
+    c.word.drives_to_goal = goal;
+    c.word.stopped = stopped;
+    for (int n = 0; n < 100; ++n) {
+      c.pose.x = 0.1 * speed * n;
+      c.expectations->judge(n * 100ms, c.evidence);
+    }
+    return c.finish().found;
+  };
+  EXPECT_EQ(found(0.1, true, false), "");
+  EXPECT_EQ(found(0.0, false, false), "") << "without a goal it may stand";
+  EXPECT_EQ(found(0.0, true, true), "") << "and so when it was stopped";
+  EXPECT_EQ(found(0.05, true, false), "r1 stays at 0.00 0.00 from 0.0 s on");
+}
+
 TEST(Expectations, AreSettledOnceEachThatHasATimeIs) {
   Case c({When::by, 10s, NearExpectation{"r1", 3.0, 4.0, 0.5}, 1, ""});
   c.scenario.expectations.push_back({When::always, {}, NoCollision{}, 2, ""});

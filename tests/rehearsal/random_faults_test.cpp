@@ -47,7 +47,7 @@ TEST(RandomFaults, EveryKindComesUpAndCanBeWrittenDown) {
   const auto faults = draw_faults(spec, scenario, Random(3));
   std::set<std::string> kinds;
   for (const Fault& fault : faults) kinds.insert(kind_of(fault));
-  EXPECT_EQ(kinds.size(), 12U) << "as many as there are keys";
+  EXPECT_EQ(kinds.size(), 13U) << "as many as there are keys";
   const auto again = parse_scenario(kTeam + text_of(faults), "t.yaml");
   ASSERT_TRUE(again.ok()) << again.error().text;
   EXPECT_EQ(text_of(again->faults), text_of(faults));

@@ -177,7 +177,8 @@ TEST(Scenario, EveryFaultIsWrittenAsItIsRead) {
       "{at: 23.000, driver_clock: r2, jump: 1600000000.000, sensor: lidar}",
       "{at: 24.000, no_stamp: r1, sensor: odometry, for: 2.000}",
       "{at: 24.500, no_stamp: r1, sensor: lidar}",
-      "{at: 25.000, driver_restart: r1, origin: [1.000, -2.000, 3.000]}"};
+      "{at: 25.000, driver_restart: r1, origin: [1.000, -2.000, 3.000]}",
+      "{at: 26.000, close: [1.000, 1.200, -0.500, 0.500, 0.000, 2.000], for: 2.000}"};
   std::string all;
   for (const std::string& fault : faults) all += "  - " + fault + "\n";
   const auto s = parse_scenario(with("  - {at: 20, crash: r1}\n", all), "b.yaml");
@@ -346,6 +347,9 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"restart_that_lasts", "crash: r1", "driver_restart: r1, origin: [1, 2, 3], for: 3", 15, "for"},
         Bad{"columns_of_a_planar_lidar", "crash: r1", "lose_columns: r1, share: 0.1, for: 3", 15,
             "lidar: full"},
+        Bad{"close_of_five_numbers", "crash: r1", "close: [1, 2, 3, 4, 0], for: 3", 15, "6"},
+        Bad{"close_turned_inside_out", "crash: r1", "close: [2, 1, 3, 4, 0, 2], for: 3", 15, "x0 < x1"},
+        Bad{"close_for_ever", "crash: r1", "close: [1, 2, 3, 4, 0, 2]", 15, "for"},
         Bad{"cover_of_a_planar_lidar", "crash: r1", "cover: r1, for: 3", 15, "lidar: full"},
         Bad{"full_disk_of_a_station", "crash: r1", "disk_full: op1, for: 3", 15, "op1"},
         Bad{"find_by_nobody", "crash: r1", "finds: artifact", 15, "robot"},
