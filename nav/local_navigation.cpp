@@ -48,7 +48,6 @@ Plan LocalNavigation::plan(const Target& target, const Pose2& pose, double stamp
     Plan plan;
     plan.stamp_s = stamp_s;
     plan.blocked = true;
-    plan.reason = Reason::terrain_stale;
     return plan;
   }
   const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
@@ -80,9 +79,11 @@ Plan LocalNavigation::plan(const Target& target, const Pose2& pose, double stamp
       plan = {.clearance = plan.clearance};
       plan.stamp_s = stamp_s;
       plan.blocked = true;
-      plan.reason = Reason::blocked;
     }
-    if (plan.blocked || found.along < kBeforeOthers) plan.cause = found.cause;
+    if (plan.blocked || found.along < kBeforeOthers) {
+      plan.cause = found.cause;
+      plan.cause_ahead = found.along;
+    }
   }
   plan.max_speed = std::min(plan.max_speed, speed_beside(tracker_.movers(), age, plan, platform_));
   return plan;
@@ -117,23 +118,22 @@ Plan LocalNavigation::plan_path(const Target& target, const Pose2& pose, double 
     if (!plan.blocked || target.kind != Target::Kind::goal) return plan;
     if (target.nudges) nudge();
   }
-  if (plan.blocked) plan.reason = plan.side == Side::none ? Reason::blocked : Reason::start_in_collision;
   return plan;
 }
 
-// What is nearest on the straight line to the target, which about is the route.
+// What is nearest on the straight line to the target, which is about the route.
 LocalNavigation::Hindrance LocalNavigation::hindrance(const Target& target, const Pose2& pose,
                                                       const Parts& parts,
                                                       std::span<const Eigen::Vector3f> peers) const {
   if (target.kind != Target::Kind::goal) return {};
   constexpr float kAhead = 4.0f, kBeside = 0.15f, kNear = 0.35f, kBesidePeer = 0.6f;  // m
-  const Eigen::Vector2f to = (pose.inverse() * target.goal).cast<float>();
+  const Pose2 back = pose.inverse();
+  const Eigen::Vector2f to = (back * target.goal).cast<float>();
   const float length = std::min(to.norm(), kAhead);
   const Eigen::Vector2f way = length > 1e-3f ? Eigen::Vector2f(to.normalized()) : Eigen::Vector2f(1, 0);
   const auto half = static_cast<float>(std::max(platform_.width, platform_.length) / 2) + kBeside;
   std::array<Eigen::Vector3f, 8> near_peers{};  // In the frame of the robot.
   std::size_t peer_count = 0;
-  const Pose2 back = pose.inverse();
   for (const Eigen::Vector3f& peer : peers) {
     const Eigen::Vector2f at = (back * Eigen::Vector2d(peer.x(), peer.y())).cast<float>();
     if (at.norm() < kAhead + peer.z() + half && peer_count < near_peers.size())

@@ -410,7 +410,7 @@ void Agent::CommandComponent::give_way(Time at) {
       for (const Eigen::Vector3d& point : nav::first_part(step->ahead, kRouteAhead))
         own.route.push_back(frames_.to_map(point).head<2>());
     const Progress clearing = behaviour_.clearing();
-    own.blocked = clearing.blocked || clearing.unreachable;
+    own.blocked = clearing.blocked;
     own.arrived = clearing.arrived;
   }
   right_of_way_.tick(own, at);

@@ -99,6 +99,7 @@ void fields(Io& io, Of<Io, Robot>& robot) {
   io.field("mode", robot.mode);
   io.field("moving_allowed", robot.moving_allowed);
   io.field("reason", robot.reason);
+  io.word("recovery", robot.recovery, RecoveryState::give_up, [](RecoveryState s) { return to_string(s); });
   io.word("goal_state", robot.goal_state, GoalState::reached, [](GoalState s) { return to_string(s); });
   io.field("goal_id", robot.goal_id);
   io.field("modes", robot.options);

@@ -17,6 +17,7 @@ using contract::Epoch;
 using contract::ExplorationPhase;
 using contract::GoalState;
 using contract::ModeOption;
+using contract::RecoveryState;
 
 /// The bounding box of a robot's body, m; 0: unknown.
 struct Size {

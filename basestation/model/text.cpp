@@ -2,6 +2,7 @@
 #include "basestation/model/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -56,6 +57,13 @@ std::string motion_text(const Robot& robot) {
 std::string standstill_text(const Robot& robot) {
   if (robot.reason == Reason::none || robot.moving_allowed) return {};
   return std::string(describe(robot.reason));
+}
+
+std::string recovery_text(RecoveryState state) {
+  static constexpr std::array kTexts{
+      "",         "waits for what is in its way", "moves away from an obstacle",
+      "backs up", "looks for another way",        "found no way, looks again now and then"};
+  return kTexts[static_cast<std::size_t>(state)];
 }
 
 std::string exploration_text(const contract::Exploration& e) {

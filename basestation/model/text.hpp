@@ -23,6 +23,8 @@ std::string limits_text(const Robot& robot);
 std::string motion_text(const Robot& robot);
 /// Why the robot does not move, in words; empty: nothing keeps it.
 std::string standstill_text(const Robot& robot);
+/// What the robot does about what is in its way; empty: nothing is.
+std::string recovery_text(RecoveryState state);
 /// What it explored: "exploring, 120 m3, about 40%, 3 frontiers left, 0 out of reach".
 std::string exploration_text(const contract::Exploration& exploration);
 /// An area with its kind, corners (m) and heights (m).

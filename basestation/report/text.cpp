@@ -102,6 +102,7 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
   if (robot.behaviour_count > 0 && !robot.moving_allowed && robot.reason != Reason::none)
     mode += ", does not move: " + std::string(describe(robot.reason)) + " [" +
             std::string(name(robot.reason)) + "]";
+  if (robot.recovery != RecoveryState::drive) mode += ", " + recovery_text(robot.recovery);
   out += "  mode     " + mode + "\n";
   out += "  stops    " + stops_text(robot) + "\n";
   out += "  goal     " + goal_text(robot) + "\n";

@@ -193,6 +193,7 @@ radio::BehaviourState encode(const BehaviourState& state) {
   out.stopped(state.stopped);
   out.moving_allowed(state.moving_allowed);
   out.reason(static_cast<std::uint16_t>(state.reason));
+  out.recovery(static_cast<radio::RecoveryState>(state.recovery));
   out.goal_state(static_cast<radio::GoalState>(state.goal_state));
   out.goal_id(state.goal_id);
   out.goal({state.goal.x(), state.goal.y(), state.goal.z()});
@@ -212,6 +213,7 @@ std::optional<BehaviourState> decode(const radio::BehaviourState& sample) {
                        .stopped = sample.stopped(),
                        .moving_allowed = sample.moving_allowed(),
                        .reason = static_cast<Reason>(sample.reason()),
+                       .recovery = known_or(sample.recovery(), RecoveryState::give_up, RecoveryState::drive),
                        .goal_state = known_or(sample.goal_state(), GoalState::reached, GoalState::none),
                        .goal_id = sample.goal_id(),
                        .goal = Eigen::Vector3d(sample.goal().data()),

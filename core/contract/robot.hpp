@@ -101,6 +101,14 @@ struct Exploration {
   bool operator==(const Exploration&) const = default;
 };
 
+/// What a robot does about what is in its way.
+enum class RecoveryState : std::uint8_t { drive, wait, nudge, back_up, replan, give_up };
+
+constexpr std::string_view to_string(RecoveryState state) {
+  constexpr std::string_view kNames[]{"drive", "wait", "nudge", "back_up", "replan", "give_up"};
+  return kNames[static_cast<std::size_t>(state)];
+}
+
 struct BehaviourState {
   static constexpr std::size_t kMaxOptions = 16, kMaxConvoy = 8, kMaxAreas = 16;
 
@@ -109,6 +117,7 @@ struct BehaviourState {
   bool stopped{};
   bool moving_allowed{};
   Reason reason{Reason::none};  ///< Why the robot does not move.
+  RecoveryState recovery{RecoveryState::drive};
   GoalState goal_state{GoalState::none};
   std::uint32_t goal_id{};                        ///< Rises with every accepted goal.
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};  ///< z is NaN where the ground is meant.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <algorithm>
+
+#include "nav/geometry/segment.hpp"
 
 namespace adit::nav {
 
@@ -14,9 +15,7 @@ inline double cross_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 inline double squared_distance(const Eigen::Vector2d& place, const Eigen::Vector2d& from,
                                const Eigen::Vector2d& to) {
   const Eigen::Vector2d side = to - from;
-  const double square = side.squaredNorm();
-  const double part = square > 0.0 ? std::clamp((place - from).dot(side) / square, 0.0, 1.0) : 0.0;
-  return (place - from - part * side).squaredNorm();
+  return (place - from - part_before(place, from, to) * side).squaredNorm();
 }
 
 }  // namespace adit::nav

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "core/geometry/pose.hpp"
-#include "core/result/reason.hpp"
 
 namespace adit::nav {
 
@@ -57,16 +56,16 @@ enum class Side : std::uint8_t { none, ahead, left, behind, right };
 struct Plan {
   static constexpr std::size_t kMaxPath = 72;
 
-  double stamp_s{0};            ///< Time of the pose that the plan starts from, s.
-  bool blocked{false};          ///< No path is free: `path` is empty.
-  bool nudge{false};            ///< The path leads away from obstacles, and not to the target.
-  Reason reason{Reason::none};  ///< Reason::blocked, start_in_collision, goal_missing (no target) or none.
-  Side side{Side::none};        ///< Side of the obstacle that prevents the robot from starting.
-  bool arrived{false};          ///< The robot is within the tolerance of the goal: `path` is empty.
+  double stamp_s{0};      ///< Time of the pose that the plan starts from, s.
+  bool blocked{false};    ///< No path is free: `path` is empty.
+  bool nudge{false};      ///< The path leads away from obstacles, and not to the target.
+  Side side{Side::none};  ///< Side of the obstacle that prevents the robot from starting.
+  bool arrived{false};    ///< The robot is within the tolerance of the goal: `path` is empty.
   bool ends_at_goal{false};
   double end_speed{0};       ///< Permitted speed at the end of the path, m/s.
   double reached{0};         ///< How far along the straight line to the target the path leads, m.
   Cause cause{Cause::none};  ///< What is nearest on that line: of a blocked plan, or near by.
+  double cause_ahead{0};     ///< How far away that is, m.
   bool reverse{false};       ///< The path is driven backwards; its poses are those of the body.
   bool turn_first{false};    ///< The path begins with a turn on the spot, however small it is.
   int turn{0};               ///< Side of the turn if the path starts behind: 1 left, -1 right, 0 either.

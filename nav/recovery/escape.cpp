@@ -87,7 +87,7 @@ void Escape::offer(std::int32_t from, const Pose2& motion, int direction, float 
   std::push_heap(open_.begin(), open_.end());
 }
 
-Side Escape::side_of(std::span<const ObstaclePoint> obstacles) {
+Side Escape::side_of(std::span<const ObstaclePoint> obstacles) const {
   float deepest = -static_cast<float>(kClear);
   Side side = Side::none;
   for (const ObstaclePoint& o : obstacles) {

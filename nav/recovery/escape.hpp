@@ -29,7 +29,7 @@ class Escape {
   /// within 1.2 m, or `kClear` is free already. `pose`: odometry frame; `obstacles`: robot's frame at `pose`.
   std::optional<Plan> plan(const Pose2& pose, std::span<const ObstaclePoint> obstacles);
   /// Side of the nearest obstacle; none: at least `kClear` is free.
-  Side side_of(std::span<const ObstaclePoint> obstacles);
+  Side side_of(std::span<const ObstaclePoint> obstacles) const;
 
  private:
   struct Node {

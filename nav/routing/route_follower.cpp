@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "nav/geometry/segment.hpp"
+
 namespace adit::nav {
 namespace {
 
@@ -56,9 +58,7 @@ void RouteFollower::advance(RoutePlanner& planner, const Eigen::Vector3d& place)
   Eigen::Vector3d nearest = points.front();
   for (std::size_t i = 0; i + 1 < points.size() && passed < 5.0; ++i) {
     const Eigen::Vector3d way = points[i + 1] - points[i];
-    const double length2 = way.head<2>().squaredNorm();
-    const double t =
-        length2 > 0 ? std::clamp((place - points[i]).head<2>().dot(way.head<2>()) / length2, 0.0, 1.0) : 0.0;
+    const double t = part_before(place.head<2>(), points[i].head<2>(), points[i + 1].head<2>());
     const Eigen::Vector3d p = points[i] + t * way;
     if (const double d = (p - place).head<2>().norm(); d < least - 1e-6) {
       least = d;
@@ -84,16 +84,17 @@ void RouteFollower::advance(RoutePlanner& planner, const Eigen::Vector3d& place)
 // way would help, and there is none, nothing is marked.
 void RouteFollower::look_around(RoutePlanner& planner, const RouteRequest& request) {
   bool end = false;
-  Eigen::Vector3d there = point_at(route_.points, kReachAhead, end);
+  const double ahead = std::max(kReachAhead, request.blocked_ahead);
+  Eigen::Vector3d there = point_at(route_.points, ahead, end);
   const Eigen::Vector2d to = passage_ ? (passage_->middle - request.place).head<2>() : Eigen::Vector2d(0, 0);
-  if (passage_ && to.norm() < kAtPassage && to.dot(passage_->axis) > 0) {
+  if (passage_ && to.norm() < std::max(kAtPassage, ahead) && to.dot(passage_->axis) > 0) {
     there = passage_->middle;
     end = false;
   }
   if (end) return;
   planner.block({there.x(), there.y(), request.place.z()}, request.stamp_s);
   Route other = planner.plan(request.place, request.goal);
-  if (!other.found() && request.replan->only_if_found) return planner.unblock_last();
+  if (!other.found() && request.ask == RouteAsk::around_if_found) return planner.unblock_last();
   passage_.reset();
   take(std::move(other), false);
 }
@@ -134,8 +135,8 @@ bool RouteFollower::leads_through(const NarrowPassage& passage, const Eigen::Vec
   for (std::size_t i = 0; i + 1 < route_.points.size() && passed < kReported + kSamePassage; ++i) {
     const Eigen::Vector2d way = (route_.points[i + 1] - route_.points[i]).head<2>();
     const Eigen::Vector2d to = (passage.middle - route_.points[i]).head<2>();
-    const double length2 = way.squaredNorm();
-    const double t = length2 > 0 ? std::clamp(to.dot(way) / length2, 0.0, 1.0) : 0.0;
+    const double t =
+        part_before(passage.middle.head<2>(), route_.points[i].head<2>(), route_.points[i + 1].head<2>());
     if ((to - t * way).norm() < kSamePassage && way.dot(passage.axis) > 0) return true;
     passed += way.norm();
   }
@@ -215,8 +216,8 @@ double RouteFollower::end_speed(const RouteStep& step, const Eigen::Vector3d& pl
   for (std::size_t i = 0; i + 1 < route_.points.size() && i < RouteStep::kMaxAhead; ++i) {
     const Eigen::Vector2d way = (route_.points[i + 1] - route_.points[i]).head<2>();
     const Eigen::Vector2d to = (step.target - route_.points[i]).head<2>();
-    const double length2 = way.squaredNorm();
-    const double t = length2 > 0 ? std::clamp(to.dot(way) / length2, 0.0, 1.0) : 0.0;
+    const double t =
+        part_before(step.target.head<2>(), route_.points[i].head<2>(), route_.points[i + 1].head<2>());
     if (const double d = (to - t * way).norm(); d < least - 1e-6) {
       least = d;
       after = i + 1;
@@ -261,17 +262,18 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
   if (!goal_id_ || *goal_id_ != request.goal_id) clear();
   if (!goal_id_) goal_ = request.goal;
   goal_id_ = request.goal_id;
-  if (planner.map().used() == 0) return {.replanned = request.replan.has_value()};
-  if (request.free) {
+  const bool asked = request.ask != RouteAsk::none, open = request.ask == RouteAsk::open;
+  if (planner.map().used() == 0) return {.replanned = asked};
+  if (open) {
     planner.unblock();
     looked_.reset();
   }
-  bool usable = route_.found();
-  if (usable) advance(planner, place);
-  if (usable && request.replan) look_around(planner, request);
-  usable = route_.found();
-  const bool lost = usable && !planner.measure(route_);
-  usable = usable && !lost;
+  if (route_.found()) {
+    advance(planner, place);
+    if (asked && !open) look_around(planner, request);
+  }
+  const bool lost = route_.found() && !planner.measure(route_);
+  const bool usable = route_.found() && !lost;
   if (lost || moved || !looked_ || request.stamp_s - *looked_ >= params_.look) {
     looked_ = request.stamp_s;
     Route other = planner.plan(place, request.goal);
@@ -296,7 +298,7 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
     if (!unreachable_since_) unreachable_since_ = request.stamp_s;
     if (request.stamp_s - *unreachable_since_ >= params_.proof) step.state = RouteStep::State::unreachable;
   }
-  step.replanned = request.replan.has_value();
+  step.replanned = asked;
   return step;
 }
 

@@ -33,9 +33,9 @@ struct RouteRequest {
   Eigen::Vector3d goal{0, 0, 0};  ///< z NaN: the floor of `place`.
   /// Number of the goal: one of the same number that lies elsewhere has moved with the map.
   std::uint64_t goal_id{};
-  bool pass{};                               ///< More goals follow: the robot need not stop at this one.
-  std::optional<Recovery::Replan> replan{};  ///< The way ahead is blocked: another route is looked for.
-  bool free{};                               ///< What was marked as blocked is free again.
+  bool pass{};  ///< More goals follow: the robot need not stop at this one.
+  RouteAsk ask{};
+  double blocked_ahead{};  ///< What blocks the way is so far away, m.
   double stamp_s{};
 };
 
@@ -65,7 +65,7 @@ struct RouteStep {
   std::uint32_t unknown_ahead{};  ///< Bit i: the leg from corner i leads through unknown space.
   std::size_t corners{};          ///< Number of all corners of the rest of the route.
   double length{0};               ///< Length of the rest of the route, m; 0 without a route.
-  bool replanned{};               ///< Answers a request to look for another route.
+  bool replanned{};               ///< Answers a RouteAsk.
 };
 
 /// Follows a route with hysteresis: replaces the current route only when a new one is clearly better or the

@@ -21,4 +21,12 @@ inline Target target_of(const RouteStep& step) {
   return target;
 }
 
+/// What a recovery is to know of a step.
+inline RecoveryInput recovery_input(const RouteStep& step) {
+  return {.route = step.route,
+          .left = step.length,
+          .unreachable = step.state == RouteStep::State::unreachable,
+          .start_blocked = step.state == RouteStep::State::start_blocked};
+}
+
 }  // namespace adit::nav

@@ -294,6 +294,7 @@ void Behaviour::program(const Twist2& velocity, Time now) {
 }
 
 void Behaviour::set_progress(const Progress& progress) {
+  recovery_ = static_cast<contract::RecoveryState>(progress.recovery);
   if (ModeModule* current = module(*decision_.mode)) current->navigated(progress);
 }
 
@@ -401,6 +402,8 @@ contract::BehaviourState Behaviour::view() const {
   v.mode = decision_.mode->name;
   v.stopped = stopped_;
   v.moving_allowed = decision_.runs && decision_.mode->moves();
+  if (v.moving_allowed && decision_.mode->autonomous() && p.state != GoalState::reached)
+    v.recovery = recovery_;
   v.goal_state = p.state;
   v.goal_id = p.goal_id;
   v.goal = p.goal;

@@ -144,6 +144,7 @@ class Behaviour : public Requests {
   const ModeRow* running_;             ///< The mode whose module was not left.
   const ModeRow* interrupted_;         ///< The mode to resume after `get_out`.
   Reason fell_because_{Reason::none};  ///< Reason of the last fall to hold, until the next request.
+  contract::RecoveryState recovery_{contract::RecoveryState::drive};  ///< Of navigation.
   bool stopped_{};
   bool listens_{};
   Stick stick_{};

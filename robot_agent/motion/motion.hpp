@@ -10,7 +10,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
-#include "nav/planners/plan.hpp"
+#include "nav/recovery/recovery.hpp"
 
 namespace adit::agent {
 
@@ -58,19 +58,18 @@ struct GoTo {
 /// Navigation's progress towards the place that was requested last.
 struct Progress {
   bool arrived{};
-  bool blocked{};  ///< Every path is blocked.
-  /// No path leads there, not even through unobserved space; `blocked` is then also set.
-  bool unreachable{};
+  bool blocked{};        ///< Every path is blocked, or was and the robot made no progress since.
   bool goal_seen{true};  ///< The ground at the goal is known.
-  /// Why it is unreachable, where that is known.
-  Reason reason{Reason::none};
-  bool stuck{};        ///< No progress along the route for a long time.
-  bool waits{};        ///< With `blocked`: its operator should know by now.
-  bool gave_up{};      ///< The robot tried everything: see nav::Recovery.
-  nav::Cause cause{};  ///< With `blocked`: what is in the way.
-  nav::Side
-      in_collision{};  ///< With `blocked`: what keeps the robot there touches it, or nearly, on this side.
+  Reason reason{};   ///< Why it makes no progress: see nav::Recovery. None: nothing is to be reported yet.
+  Reason refusal{};  ///< With goal_unreachable: what is wrong with the goal itself, if that is known.
+  nav::RecoveryState recovery{nav::RecoveryState::drive};
+  nav::Cause cause{};        ///< With `blocked`: what is in the way.
+  nav::Side in_collision{};  ///< With start_in_collision: on this side something touches it, or nearly.
   bool operator==(const Progress&) const = default;
+
+  /// No path leads there, not even through unobserved space.
+  bool unreachable() const { return reason == Reason::goal_unreachable; }
+  bool gave_up() const { return recovery == nav::RecoveryState::give_up; }
 };
 
 /// A motion that a source requests from navigation.

@@ -58,9 +58,7 @@ void Navigation::accept(MuxKey, const Motion& motion, Time now) {
       continued_ = now;
     else
       step_.reset();
-    last_target_ = {};
-    replan_.reset();
-    free_ = false;
+    ask_ = nav::RouteAsk::none;
     held_.clear();
   }
   motion_ = motion;
@@ -80,7 +78,6 @@ void Navigation::clear() {
   has_plan_ = false;
   step_.reset();
   recovery_.clear();
-  last_target_ = {};
   held_.clear();
   monitor_.clear();
   ++scan_epoch_;
@@ -214,7 +211,6 @@ nav::Target Navigation::target() const {
       target = nav::Target::to(frames_.to_odom(Eigen::Vector2d(go->goal.head<2>())));
     else if (step)  // Otherwise the robot waits for its route.
       target = nav::target_of(*step);
-    if (target.kind == nav::Target::Kind::none && recovery_.gave_up()) target = last_target_;
     target.speed = go->max_speed;
     if (target.last) target.tolerance = go->tolerance;
     return target;
@@ -314,8 +310,8 @@ void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now, st
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
     job->goal = frames_.to_odom(go->goal);
     job->pass = go->pass;
-    job->replan = std::exchange(replan_, std::nullopt);
-    job->free = std::exchange(free_, false);
+    job->ask = std::exchange(ask_, nav::RouteAsk::none);
+    job->blocked_ahead = recovery_.cause_ahead();
   }
   job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
@@ -328,7 +324,7 @@ void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now, st
 
 void Navigation::routed(const RouteJob& job, const Result<nav::RouteStep>& step) {
   routing_ = false;
-  if (!step && job.generation == goal_generation_ && job.replan) replan_ = job.replan;
+  if (!step && job.generation == goal_generation_ && ask_ == nav::RouteAsk::none) ask_ = job.ask;
   if (!step || job.odom_epoch != frames_.odom_epoch()) return;
   mapped_ = job.made;
   const auto* go = std::get_if<GoTo>(&motion_);
@@ -346,10 +342,7 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   job->scan = std::move(scan);
   job->target = target();
   job->state = recovery_.state();
-  if (std::holds_alternative<GoTo>(motion_)) {
-    if (job->target.kind == nav::Target::Kind::goal) last_target_ = job->target;
-    job->target = recovery_.target(job->target);
-  }
+  if (std::holds_alternative<GoTo>(motion_)) job->target = recovery_.target(job->target);
   job->peers = peers_;
   job->pose = frames_.T_odom_base().planar();
   if (is_bound() && !fence_.empty()) job->border = fence_.border(frames_, kBorderRange);
@@ -386,20 +379,12 @@ void Navigation::follow(const nav::Plan& plan, Time made) {
 }
 
 void Navigation::recover(const PlanJob& job, const nav::Plan& plan, bool held) {
-  const auto* step = step_on(now());
-  nav::RecoveryInput in{};
+  nav::RecoveryInput in = router_ ? nav::recovery_input(*step_on(now()))
+                                  : nav::RecoveryInput{.route = 1, .left = distance_to_goal(job.pose)};
+  in.take(plan);
   in.goal = goal_generation_;
-  in.route = router_ ? step->route : 1;
-  in.left = router_ ? step->length : distance_to_goal(job.pose);
-  in.unreachable = router_ && step->state == nav::RouteStep::State::unreachable;
-  in.start_blocked = router_ && step->state == nav::RouteStep::State::start_blocked;
-  in.blocked = plan.blocked;
-  in.nudge = plan.nudge;
   in.held = held;
-  in.cause = plan.cause;
-  in.side = plan.side;
-  in.ends_at_goal = plan.ends_at_goal;
-  in.stands = plan.arrived || speed_limit_ < kCrawls;
+  in.stands = in.stands || speed_limit_ < kCrawls;
   in.at = job.pose.position();
   in.stamp_s = seconds(job.made.time_since_epoch());
   const nav::RecoveryState before = recovery_.state();
@@ -409,14 +394,10 @@ void Navigation::recover(const PlanJob& job, const nav::Plan& plan, bool held) {
                   nav::name(before).data(), in.at.x(), in.at.y());
     log().info(text);
   }
-  if (const auto replan = recovery_.take_replan()) {
-    // Without a router there is no other way.
-    if (router_)
-      replan_ = replan;
-    else
-      recovery_.replanned();
+  if (const auto ask = recovery_.take_ask(); ask != nav::RouteAsk::none) {
+    ask_ = ask;
+    if (!router_) recovery_.replanned();  // There is no other way.
   }
-  free_ = free_ || recovery_.take_free();
 }
 
 void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
@@ -442,20 +423,16 @@ void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
     arrived = std::fabs(wrap_angle(turn.poses[0].yaw - job.pose.yaw)) < kTurned;
     if (!arrived) follow(turn, job.made);
   }
-  const bool unreachable =
-      recovery_.gave_up() && router_ && step->route == 0 && recovery_.reason() == Reason::goal_unreachable;
-  const bool tries = recovery_.state() != State::drive;
-  outputs_.progress(
-      {.arrived = arrived,
-       .blocked = plan.blocked || held || recovery_.gave_up(),
-       .unreachable = unreachable,
-       .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
-       .reason = unreachable && nav::is_refused(step->goal) ? reason_of(step->goal) : Reason::none,
-       .stuck = recovery_.stuck(),
-       .waits = recovery_.reason() != Reason::none,
-       .gave_up = recovery_.gave_up(),
-       .cause = tries ? recovery_.cause() : plan.cause,
-       .in_collision = recovery_.gave_up() ? recovery_.side() : nav::Side::none});
+  const Reason reason = recovery_.reason();
+  const bool refused = reason == Reason::goal_unreachable && nav::is_refused(step->goal);
+  outputs_.progress({.arrived = arrived,
+                     .blocked = plan.blocked || held || reason != Reason::none,
+                     .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
+                     .reason = reason,
+                     .refusal = refused ? reason_of(step->goal) : Reason::none,
+                     .recovery = recovery_.state(),
+                     .cause = recovery_.cause(),
+                     .in_collision = recovery_.side()});
 }
 
 bool Navigation::goal_free(const Eigen::Vector2d& place) const {

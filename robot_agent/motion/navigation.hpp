@@ -154,9 +154,7 @@ class Navigation : public Component, public NavigationInput {
   Time step_made_{};
   Time continued_{};  // When the goal that continues that one was requested.
   nav::Recovery recovery_{};
-  nav::Target last_target_{};  // The last one on a route, by which the robot sees that the way is free again.
-  std::optional<nav::Recovery::Replan> replan_{};  // To be sent to the router with the next scan.
-  bool free_{};                                    // The same.
+  nav::RouteAsk ask_{};                   // To be sent to the router with the next scan.
   std::vector<Eigen::Vector3f> peers_{};  // Centres and radii of the other robots, odometry frame, m.
   std::optional<Time> scanned_{};
   std::optional<Time> mapped_{};  // When the scan was received that the router answered last.

@@ -34,7 +34,7 @@ struct Router::Maps {
 
   nav::RouteStep step(const RouteJob& job, double stamp) {
     nav::RouteStep step = route_follower.step(
-        planner, {job.place, *job.goal, job.generation, job.pass, job.replan, job.free, stamp});
+        planner, {job.place, *job.goal, job.generation, job.pass, job.ask, job.blocked_ahead, stamp});
     step.goal = goals.stand(planner, *job.goal, job.place.z());
     // From afar the map may show what was there a while ago, and a person who passes is no reason to stop.
     const bool near = (*job.goal - job.place).head<2>().norm() < kJudged;

@@ -32,8 +32,8 @@ struct RouteJob {
   std::optional<Eigen::Vector3d> goal{};  ///< Unset: the scan enters the map, and no route is requested.
   Eigen::Vector3d place{0, 0, 0};         ///< Position of the body.
   bool pass{};                            ///< See nav::RouteRequest.
-  std::optional<nav::Recovery::Replan> replan{};
-  bool free{};
+  nav::RouteAsk ask{};
+  double blocked_ahead{};         ///< See nav::RouteRequest.
   std::vector<TeamRobot> team{};  ///< The other robots.
   std::uint32_t odom_epoch{};     ///< Epoch of that frame; maps of another epoch are discarded.
   std::uint64_t generation{};     ///< Number of the goal.

@@ -291,7 +291,7 @@ TEST_F(BehaviourTest, ArrivalEndsTheMotionNotTheMode) {
 TEST_F(BehaviourTest, ReportsAnUnreachableGoalOnceAndContinuesWhenARouteExists) {
   ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
   run(100ms);
-  behaviour.set_progress({.blocked = true, .unreachable = true});
+  behaviour.set_progress({.blocked = true, .reason = Reason::goal_unreachable});
   run(20s);
   EXPECT_THAT(codes(), testing::ElementsAre("unreachable")) << "and not blocked as well";
   EXPECT_EQ(behaviour.view().goal_state, GoalState::blocked);
@@ -392,7 +392,7 @@ TEST_F(BehaviourTest, IdleAndBlockedAreReportedOnce) {
   run(4s);
   EXPECT_TRUE(notices.empty());
   EXPECT_EQ(behaviour.view().goal_state, GoalState::blocked);
-  behaviour.set_progress({.blocked = true, .waits = true});
+  behaviour.set_progress({.blocked = true, .reason = Reason::blocked});
   run(10s);
   EXPECT_THAT(codes(), testing::ElementsAre("blocked"));
 }

@@ -151,7 +151,7 @@ TEST_F(ExploreModeTest, AGoalThatNavigationGaveUpIsReportedToTheExplorer) {
   behaviour.set_progress({.blocked = true});
   run(10s);
   EXPECT_EQ(blocks, 0) << "it still tries";
-  behaviour.set_progress({.blocked = true, .gave_up = true});
+  behaviour.set_progress({.blocked = true, .recovery = nav::RecoveryState::give_up});
   run(1s);
   EXPECT_EQ(blocks, 1);
 }

@@ -31,9 +31,9 @@ static void randomize(RandomSamples& random, radio::Area& out) {
   if (random.random().chance(0.5)) out.corners().resize(2 * random.random().below(20), 1.0F);
 }
 static void randomize(RandomSamples& random, radio::BehaviourState& out) {
-  random.any(out.robot(), out.mode(), out.stopped(), out.moving_allowed(), out.reason(), out.goal_state(),
-             out.goal_id(), out.goal(), out.modes(), out.convoy(), out.yields(), out.yields_to(),
-             out.exploration(), out.areas(), out.seq());
+  random.any(out.robot(), out.mode(), out.stopped(), out.moving_allowed(), out.reason(), out.recovery(),
+             out.goal_state(), out.goal_id(), out.goal(), out.modes(), out.convoy(), out.yields(),
+             out.yields_to(), out.exploration(), out.areas(), out.seq());
 }
 static void randomize(RandomSamples& random, radio::Notification& out) {
   random.any(out.robot(), out.seq(), out.stamp(), out.operator_name(), out.severity(), out.code(),
@@ -189,6 +189,7 @@ TEST(ContractRobot, ABehaviourReturnsAsItWas) {
     BehaviourState sent{.robot = random.name(),
                         .mode = random.name(),
                         .reason = any_reason(random),
+                        .recovery = one_of(random, RecoveryState::give_up),
                         .goal_state = one_of(random, GoalState::reached),
                         .goal = {random.number(1e4), random.number(1e4), random.number(1e4)}};
     random.any(sent.stopped, sent.moving_allowed, sent.goal_id, sent.yields);

@@ -54,12 +54,8 @@ struct ClosedLoop {
     const Target target = recovery.target(goal);
     const bool stands = recovery.gave_up() || recovery.state() == RecoveryState::replan;
     cycle(target, !stands);
-    in.blocked = last.blocked;
-    in.nudge = last.nudge;
+    in.take(last);
     in.held = held.held(time, kHeldAfter);
-    in.cause = last.cause;
-    in.side = last.side;
-    in.ends_at_goal = last.ends_at_goal;
     in.at = odometry().position();
     in.stamp_s = time;
     return recovery.look(in);
@@ -107,7 +103,7 @@ struct ClosedLoop {
         driven_to = target.goal;
         const double left = (target.goal - odometry().position()).norm();
         recovering_cycle(target, {.goal = goals, .route = 1, .left = left});
-        if (recovery.take_replan()) recovery.replanned();
+        if (recovery.take_ask() != RouteAsk::none) recovery.replanned();
       }
       if (last.arrived && follower.command().zero()) return true;
     }

@@ -263,6 +263,67 @@ TEST(HybridAStarPlanner, BacksOutOfASmallRoomThroughADoorThatIsWideEnough) {
   EXPECT_TRUE(plan.reverse);
 }
 
+/// The corner of two corridors 1.5 m wide, in which the robot heads for the wall.
+std::vector<ObstaclePoint> corner() {
+  std::vector<ObstaclePoint> walls;
+  for (float way = -0.75f; way <= 4.0f; way += 0.03f) {
+    walls.push_back({0.75f, way, 1.0f});
+    walls.push_back({-way, -0.75f, 1.0f});
+    if (way < 0.75f) continue;
+    walls.push_back({-0.75f, way, 1.0f});
+    walls.push_back({-way, 0.75f, 1.0f});
+  }
+  return walls;
+}
+
+TEST(HybridAStarSearch, TurnsOnTheSpotWhereThatIsFree) {
+  for (const Platform& platform : {wheeled(), tracked(), car()}) {
+    DistanceField field;
+    CostToGo cost_to_go;
+    field.fill(corner());
+    HybridAStarSearch search(platform);
+    HybridAStarTask task{};
+    task.target = {0, 3.0};
+    task.turns = true;
+    cost_to_go.fill(field, task.target, static_cast<float>(platform.width / 2 + 0.06));
+    HybridAStarPath path;
+    ASSERT_TRUE(search.find(field, cost_to_go, task, path));
+    std::size_t turned = 0;
+    for (std::size_t i = 1; i < path.count; ++i) {
+      const Pose2 moved = path.spots[i - 1].pose.inverse() * path.spots[i].pose;
+      if (path.spots[i].direction != 0) continue;
+      ++turned;
+      EXPECT_NEAR(std::hypot(moved.x, moved.y), 0, 1e-9);
+      EXPECT_NEAR(std::fabs(moved.yaw), MotionPrimitives::kTurn / MotionPrimitives::kPoses, 1e-6);
+      EXPECT_TRUE(search.free(field, path.spots[i].pose, false, 0.01f)) << i;
+    }
+    EXPECT_EQ(turned > 0, platform.turns_on_spot());
+    if (turned > 0) {
+      EXPECT_LT(path.cost(), 6.0) << "a quarter of a turn costs 0.6 m, the way 3 m";
+    }
+  }
+}
+
+TEST(HybridAStarPlanner, FollowsATurnOnTheSpotToItsEndAndDrivesOn) {
+  HybridAStarPlanner planner(wheeled());
+  const auto walls = corner();
+  Target target = Target::to({0.0, 3.0});
+  target.passage = Pose2{0.0, 2.0, M_PI / 2};
+  int cycle = 0;
+  for (double turned = 0; turned < 1.4; turned += 0.1) {
+    const Pose2 at{0, 0, turned};
+    const Plan plan = planner.plan(target, at, seen_from(at, walls), 0.1 * cycle++);
+    ASSERT_TRUE(plan.turn_first) << turned;
+    EXPECT_EQ(plan.turn, 1);
+    EXPECT_FALSE(plan.reverse);
+    EXPECT_GT(plan.path().back().y, 1.0);
+    EXPECT_NEAR(plan.path().front().yaw, M_PI / 2, 0.05);
+  }
+  const Pose2 at{0, 0, 1.45};
+  const Plan plan = planner.plan(target, at, seen_from(at, walls), 0.1 * cycle);
+  EXPECT_FALSE(plan.turn_first || plan.blocked);
+}
+
 TEST(HybridAStarPlanner, BrakesInTimeForATightPlace) {
   const Platform platform = car();
   const auto gap = static_cast<float>(platform.width) + 0.1f;

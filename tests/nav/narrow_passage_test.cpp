@@ -209,7 +209,7 @@ RouteStep look_around_in_hall(RoutePlanner& planner, bool only_if_found) {
   const RouteRequest request{.place = {4.4, 3.1, 0}, .goal = {8, 1.0, 0}};
   EXPECT_TRUE(route_follower.step(planner, request).passage);
   RouteRequest asks = request;
-  asks.replan = Recovery::Replan{only_if_found};
+  asks.ask = only_if_found ? RouteAsk::around_if_found : RouteAsk::around;
   asks.stamp_s = 1.0;
   return route_follower.step(planner, asks);
 }
@@ -238,7 +238,7 @@ TEST(NarrowPassage, FarBeforeItWhatBlocksIsAheadOfTheRobot) {
   RouteFollower route_follower;
   RouteRequest request{.place = {2.5, 3.05, 0}, .goal = {8, 1.0, 0}};
   route_follower.step(planner, request);
-  request.replan = Recovery::Replan{false};
+  request.ask = RouteAsk::around;
   route_follower.step(planner, request);
   ASSERT_EQ(planner.map().blocked_places().size(), 1u);
   EXPECT_NEAR(planner.map().blocked_places().front().x, 3.4, 0.1);

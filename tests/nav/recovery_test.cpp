@@ -20,8 +20,10 @@ class RecoveryTest : public testing::Test {
       if (recovery.state() == RecoveryState::back_up) in.at.x() -= 0.05;
       const RecoveryState before = recovery.state();
       if (recovery.look(in) != before) ++begun[recovery.state()];
-      if (const auto replan = recovery.take_replan()) {
-        replans.push_back(replan->only_if_found);
+      if (const RouteAsk ask = recovery.take_ask(); ask == RouteAsk::open) {
+        opens = true;
+      } else if (ask != RouteAsk::none) {
+        replans.push_back(ask == RouteAsk::around_if_found);
         if (answer) recovery.replanned(), in.route = *answer;
       }
     }
@@ -40,6 +42,7 @@ class RecoveryTest : public testing::Test {
   double now{0};
   std::map<RecoveryState, int> begun{};
   std::vector<bool> replans{};
+  bool opens{};                           ///< The router was asked to open what it marked.
   std::optional<std::uint32_t> answer{};  ///< Number of the route that the router finds.
 };
 
@@ -51,6 +54,23 @@ TEST_F(RecoveryTest, AMomentIsNoBlock) {
   look(0.5);
   in.blocked = true;
   EXPECT_EQ(look(0.9), RecoveryState::drive) << "blocked cycles far apart do not add up";
+}
+
+TEST_F(RecoveryTest, WhatStandsInTheWayIsReportedWhileItTriesUntilItMakesProgress) {
+  in.blocked = true;
+  in.cause = Cause::fixed;
+  look(2.9);
+  EXPECT_EQ(recovery.reason(), Reason::none);
+  look(0.3);
+  EXPECT_NE(recovery.state(), RecoveryState::give_up);
+  EXPECT_EQ(recovery.reason(), Reason::blocked) << "its operator hears of it after 3 s";
+  EXPECT_EQ(recovery.cause(), Cause::fixed);
+  in.blocked = false;
+  look(2);
+  EXPECT_EQ(recovery.state(), RecoveryState::drive);
+  EXPECT_EQ(recovery.reason(), Reason::blocked) << "it is where it was";
+  drive(0.7);
+  EXPECT_EQ(recovery.reason(), Reason::none);
 }
 
 TEST_F(RecoveryTest, TriesEachThingOnceThenAnotherWayThenStands) {
@@ -120,7 +140,7 @@ TEST_F(RecoveryTest, WaitsForWhatMovesAndGoesOn) {
   in.blocked = false;
   EXPECT_EQ(look(0.2), RecoveryState::drive);
   EXPECT_EQ(recovery.reason(), Reason::none);
-  EXPECT_FALSE(recovery.stuck()) << "waiting is not being stuck";
+  EXPECT_NE(recovery.reason(), Reason::stuck) << "waiting is not being stuck";
 }
 
 TEST_F(RecoveryTest, WhatStoppedMovingIsAnObstacle) {
@@ -162,20 +182,20 @@ TEST_F(RecoveryTest, ADoorThatOpensIsSeenBeforeTheMapForgetsItsBlock) {
   ASSERT_EQ(look(15), RecoveryState::give_up);
   in.blocked = false;
   in.ends_at_goal = true;
-  EXPECT_FALSE(recovery.take_free());
-  look(1.2);
-  EXPECT_TRUE(recovery.take_free());
-  EXPECT_FALSE(recovery.take_free());
+  look(0.5);
+  EXPECT_FALSE(opens);
+  look(0.7);
+  EXPECT_TRUE(opens);
   in.route = 2;
   EXPECT_EQ(look(0.2), RecoveryState::drive);
 }
 
 TEST_F(RecoveryTest, ToAndFroWithoutProgressIsStuckHoweverOftenTheGoalMovesWithTheMap) {
-  for (int n = 0; n < 600 && !recovery.stuck(); ++n) {
+  for (int n = 0; n < 600 && recovery.reason() != Reason::stuck; ++n) {
     in.left = 5.0 + 0.06 * (n % 5);
     look(0.1);
   }
-  EXPECT_TRUE(recovery.stuck());
+  EXPECT_EQ(recovery.reason(), Reason::stuck);
   EXPECT_LT(now, 50);
 }
 
@@ -201,7 +221,7 @@ TEST_F(RecoveryTest, NearItsGoalARobotThatComesNoNearerEnds) {
   in.left = 0.6;
   look(12);
   EXPECT_TRUE(recovery.gave_up());
-  EXPECT_FALSE(recovery.stuck());
+  EXPECT_NE(recovery.reason(), Reason::stuck);
 }
 
 std::vector<ObstaclePoint> wall_behind(double x) {

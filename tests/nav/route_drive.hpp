@@ -31,21 +31,16 @@ struct RouteDrive {
     step = route_follower.step(planner, {.place = {at.x, at.y, 0},
                                          .goal = {goal.x(), goal.y(), std::nan("")},
                                          .goal_id = 1,
-                                         .replan = recovery.take_replan(),
-                                         .free = recovery.take_free(),
+                                         .ask = recovery.take_ask(),
+                                         .blocked_ahead = recovery.cause_ahead(),
                                          .stamp_s = loop.time});
     if (step.replanned) recovery.replanned();
   }
   /// Drives there for a tenth of a second.
   void drive() {
-    const Target target = target_of(step);
-    if (target.kind == Target::Kind::goal) target_ = target;
-    loop.recovering_cycle(target.kind == Target::Kind::none && loop.recovery.gave_up() ? target_ : target,
-                          {.goal = 1,
-                           .route = step.route,
-                           .left = step.length,
-                           .unreachable = step.state == RouteStep::State::unreachable,
-                           .start_blocked = step.state == RouteStep::State::start_blocked});
+    RecoveryInput in = recovery_input(step);
+    in.goal = 1;
+    loop.recovering_cycle(target_of(step), in);
   }
   bool arrived() const { return step.last && loop.last.arrived && loop.follower.command().zero(); }
 
@@ -60,9 +55,6 @@ struct RouteDrive {
     }
     return false;
   }
-
- private:
-  Target target_{};  ///< The last one on a route.
 };
 
 }  // namespace adit::nav::test

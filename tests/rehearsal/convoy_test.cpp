@@ -96,7 +96,7 @@ expect:
   - {from: 29.5, to: 50, robot: r3, still: 0.3}
   - {by: 34, convoy: r1, order: [r1, r2]}
   - {by: 48, robot: r1, near: [24, 0, 0.6]}
-  - {by: 50, robot: r2, near: [21.9, 0, 1.0]}
+  - {by: 50, robot: r2, near: [21.9, -0.4, 1.0]}
   - {always: no_collision}
 )"),
                  "restart.yaml"));

@@ -119,7 +119,8 @@ TEST(Goals, AnUnseenGoalHasABudgetAndIsJudgedOnceItIsSeen) {
   EXPECT_NEAR(run.driven(0s, 12s), 1.9, 0.4);
   EXPECT_EQ(run.driven(10s, 12s), 0.0);
   EXPECT_GT(run.driven(12s, 20s), 1.0) << "mode waypoint renews the budget";
-  ASSERT_TRUE(run.notified("r1", "unreachable")) << "a block stands at the goal";
+  // Whether it was seen on the way or only at its end, a block stands at the goal.
+  EXPECT_TRUE(run.notified("r1", "unreachable") || run.report.commands.reasons.contains("goal_occupied"));
   EXPECT_EQ(run.driven(36s, 40s), 0.0);
 }
 

@@ -196,10 +196,10 @@ INSTANTIATE_TEST_SUITE_P(Config, Scenarios,
                          testing::Values("handover", "locked", "grant", "stop_by_other", "joystick_loss",
                                          "smart_joystick_wall", "waypoint_corridor", "aerial_over_walls",
                                          "car_turns_round", "legged_step", "stairs", "tracked_step",
-                                         "dead_end", "agent_crash", "cut_link", "two_robots_passing",
-                                         "station_restart", "foreign_writer", "thin_link", "floor_plan",
-                                         "stuck_stick", "low_battery", "external", "ten_robots",
-                                         "findings_after_gap", "demo"),
+                                         "dead_end", "shut_door", "agent_crash", "cut_link",
+                                         "two_robots_passing", "station_restart", "foreign_writer",
+                                         "thin_link", "floor_plan", "stuck_stick", "low_battery", "external",
+                                         "ten_robots", "findings_after_gap", "demo"),
                          [](const auto& which) { return std::string(which.param); });
 
 TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {

@@ -2,6 +2,7 @@
 #include "basestation/gui/bridge/card.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "basestation/gui/break.hpp"
@@ -67,6 +68,11 @@ Words detail(const Card& card, const Robot& robot, double age) {
   if (const std::string why = station::standstill_text(robot); !why.empty())
     return {why, station::code_text(std::string(name(robot.reason)))};
   if (!robot.yields_to.empty()) return {"makes way for " + robot.yields_to, "makes way for a robot"};
+  if (robot.recovery != station::RecoveryState::drive) {
+    static constexpr std::array kBrief{"",         "waits",           "moves away",
+                                       "backs up", "looks for a way", "found no way"};
+    return {station::recovery_text(robot.recovery), kBrief[static_cast<std::size_t>(robot.recovery)]};
+  }
   if (!robot.described) return {"capabilities not heard yet"};
   if (robot.localisation == Localisation::weak) return {"position is weak"};
   if (robot.localisation == Localisation::lost) return {"does not know where it is"};

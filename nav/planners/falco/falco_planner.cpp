@@ -139,7 +139,6 @@ Plan FalcoPlanner::plan(const Target& target, const Pose2& pose, std::span<const
   const bool nowhere =
       target.kind == Target::Kind::none || (target.kind == Target::Kind::direction && target.speed <= 0.0);
   if (nowhere) {
-    plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
     return plan;
   }
   if (goal.distance <= (target.tolerance > 0.0 ? target.tolerance : params_.tolerance)) {
@@ -151,7 +150,6 @@ Plan FalcoPlanner::plan(const Target& target, const Pose2& pose, std::span<const
   Choice choice;
   if (!choose(goal, choice)) {
     plan.blocked = true;
-    plan.reason = Reason::blocked;
     last_turn_ = 0;
     return plan;
   }

@@ -16,6 +16,7 @@ constexpr double kTurned = 0.13;
 constexpr double kOver = 0.04;          ///< A part ends this far before its last pose, m.
 constexpr double kSteersAtOnce = 0.35;  ///< Speed limit while the steering may still be changing, m/s.
 constexpr double kSlow = 0.25;          ///< A slower robot is almost stationary, m/s.
+constexpr double kFaces = 0.15;         ///< A turn on the spot ends at this heading error, rad.
 constexpr double kAhead = 4.2;          ///< Distance of the target that replaces a direction, m.
 constexpr float kHysteresis = 0.02f;    ///< Part of the margin that the current path may lose, m.
 constexpr float kTightLoss = 0.015f;    ///< Part of the tight margin that it may lose, m.
@@ -55,7 +56,6 @@ Plan HybridAStarPlanner::plan(const Target& target, const Pose2& pose,
   if (nowhere || plan.arrived) {
     current_.count = 0;
     heading_hold_.forget();
-    plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
     return plan;
   }
 
@@ -76,7 +76,6 @@ Plan HybridAStarPlanner::plan(const Target& target, const Pose2& pose,
   if (!takes && !keeps) {
     current_.count = 0;
     plan.blocked = true;
-    plan.reason = Reason::blocked;
     return plan;
   }
   write(target, pose, obstacles, plan);
@@ -108,6 +107,7 @@ HybridAStarTask HybridAStarPlanner::task_of(const Target& target, const Pose2& p
   if (std::fabs(speed_) > kMoving) task.direction = speed_ > 0 ? 1 : -1;
   if (target.kind == Target::Kind::goal) {
     task.target = rear.inverse() * target.goal;
+    task.turns = target.passage.has_value();
     heading_hold_.forget();
     return task;
   }
@@ -198,11 +198,16 @@ void HybridAStarPlanner::adopt(const Pose2& rear) {
   next_part();
 }
 
+std::size_t HybridAStarPlanner::end_of_part(std::size_t begin) const {
+  std::size_t i = begin + 1;
+  while (i + 1 < current_.count && current_.spots[i + 1].direction == current_.spots[begin + 1].direction)
+    ++i;
+  return i;
+}
+
 void HybridAStarPlanner::next_part() {
   at_ = end_;
-  std::size_t i = at_ + 1;
-  while (i + 1 < current_.count && current_.spots[i + 1].direction == current_.spots[at_ + 1].direction) ++i;
-  end_ = i;
+  end_ = end_of_part(at_);
 }
 
 bool HybridAStarPlanner::drives_ahead() const {
@@ -224,11 +229,21 @@ bool HybridAStarPlanner::follows_on(const Pose2& rear) {
     }
     return where;
   };
+  if (turns()) {
+    const auto off = [&](std::size_t i) {
+      return std::fabs(wrap_angle(current_.spots[i].pose.yaw - rear.yaw));
+    };
+    while (at_ + 1 < end_ && off(at_ + 1) < off(at_)) ++at_;
+    if (off(end_) > kFaces)
+      return (current_.spots[end_].pose.position() - rear.position()).norm() < params_.off_path;
+    next_part();
+  }
   at_ = nearest();
   const double left = search_.motions().spacing() * static_cast<double>(end_ - at_);
   if (left < kOver || (left < kTurned && std::fabs(speed_) < kSlow)) {
     if (!changes_ahead()) return false;
     next_part();
+    if (turns()) return true;
     at_ = nearest();
   }
   const Pose2& spot = current_.spots[at_].pose;
@@ -260,11 +275,16 @@ bool HybridAStarPlanner::tightens(const Pose2& back, std::size_t last) const {
 
 void HybridAStarPlanner::write(const Target& target, const Pose2& pose,
                                std::span<const ObstaclePoint> obstacles, Plan& plan) const {
-  const std::size_t last = std::min(end_, at_ + Plan::kMaxPath - 1);
-  for (std::size_t i = at_; i <= last; ++i)
+  // A turn is the beginning of the part behind it.
+  const std::size_t begin = turns() ? end_ : at_, end_of_plan = turns() ? end_of_part(end_) : end_;
+  const std::size_t last = std::min(end_of_plan, begin + Plan::kMaxPath - 1);
+  plan.turn_first = turns();
+  if (turns())
+    plan.turn = wrap_angle(current_.spots[at_ + 1].pose.yaw - current_.spots[at_].pose.yaw) > 0 ? 1 : -1;
+  for (std::size_t i = begin; i <= last; ++i)
     plan.poses[plan.pose_count++] = current_.spots[i].pose * Pose2{rear_, 0, 0};
   plan.length = static_cast<double>(plan.pose_count - 1) * search_.motions().spacing();
-  plan.reverse = current_.spots[end_].direction < 0;
+  plan.reverse = current_.spots[end_of_plan].direction < 0;
   const Eigen::Vector2d end = plan.poses[plan.pose_count - 1].position();
   plan.ends_at_goal = target.kind == Target::Kind::goal && (end - target.goal).norm() <= params_.tolerance;
   plan.option = 0;

@@ -48,6 +48,8 @@ class HybridAStarPlanner final : public Planner {
   HybridAStarTask task_of(const Target& target, const Pose2& pose, const Pose2& rear);
   float take_obstacles(std::span<const ObstaclePoint> obstacles);
   bool follows_on(const Pose2& rear);
+  /// Whether the robot is at the part of its path that is a turn on the spot.
+  bool turns() const { return at_ < end_ && current_.spots[end_].direction == 0; }
   bool passable(const Pose2& rear) const;
   bool find(HybridAStarTask task);
   bool find_there(HybridAStarTask task);
@@ -58,6 +60,7 @@ class HybridAStarPlanner final : public Planner {
   bool misses(const Pose2& passage, const Pose2& rear) const;
   bool is_better(const Pose2& rear, bool to_passage) const;
   void adopt(const Pose2& rear);
+  std::size_t end_of_part(std::size_t begin) const;
   void next_part();
   bool changes_ahead() const;
   bool tightens(const Pose2& back, std::size_t last) const;

@@ -30,7 +30,8 @@ HybridAStarSearch::HybridAStarSearch(const Platform& platform, const HybridAStar
       width_(platform.width),
       outline_(Footprint(platform).grown(params.tight_margin, params.tight_margin)),
       front_(base_ + Footprint(platform).front()),
-      closed_(static_cast<std::size_t>(kCells) * kCells * kHeadings * 2, 0) {
+      turns_(platform.turns_on_spot()),
+      closed_(static_cast<std::size_t>(kCells) * kCells * kHeadings * 3, 0) {
   const double count = std::ceil(6.0 * platform.length / platform.width);
   disc_count_ = std::clamp<std::size_t>(static_cast<std::size_t>(count), 1, kMaxDiscs);
   const double half = platform.length / 2 / static_cast<double>(disc_count_);
@@ -79,7 +80,7 @@ std::int32_t HybridAStarSearch::state(const Pose2& pose, int direction) const {
   const int j = static_cast<int>(std::floor((static_cast<float>(pose.y) + kHalf) / kCell));
   if (i < 0 || j < 0 || i >= kCells || j >= kCells) return -1;
   const int turn = static_cast<int>(std::lround(pose.yaw / (2 * M_PI) * kHeadings) + kHeadings) % kHeadings;
-  return ((turn * kCells + j) * kCells + i) * 2 + (direction > 0);
+  return ((turn * kCells + j) * kCells + i) * 3 + direction + 1;
 }
 
 bool HybridAStarSearch::ends(const CostToGo& cost_to_go, const HybridAStarTask& task,
@@ -114,7 +115,7 @@ void HybridAStarSearch::expand(const DistanceField& field, const CostToGo& cost_
       if (middle_price < 0 || end_price < 0) continue;
       const Eigen::Vector2d base = end * Eigen::Vector2d(base_, 0.0);
       const float left = cost_to_go.at(static_cast<float>(base.x()), static_cast<float>(base.y()));
-      if (left >= CostToGo::kUnreachable || nodes_.size() == kMaxNodes || open_.size() == kMaxNodes) continue;
+      if (left >= CostToGo::kUnreachable) continue;
       const auto step = static_cast<float>(primitives_.step());
       float cost = 0.5f * (middle_price + end_price) * step;
       if (direction < 0) cost *= static_cast<float>(params_.reverse_cost);
@@ -129,10 +130,43 @@ void HybridAStarSearch::expand(const DistanceField& field, const CostToGo& cost_
       next.level = static_cast<std::int8_t>(level);
       next.direction = static_cast<std::int8_t>(direction);
       next.from = on ? from.level : static_cast<std::int8_t>(level);
-      open_.push_back({next.cost + kHeuristicWeight * left, static_cast<std::int32_t>(nodes_.size())});
-      std::push_heap(open_.begin(), open_.end());
-      nodes_.push_back(next);
+      add(next);
     }
+  }
+  if (turns_ && task.only == 0 && (task.turns || task.tight)) turn_on_spot(field, index);
+}
+
+void HybridAStarSearch::add(Node next) {
+  if (nodes_.size() == kMaxNodes || open_.size() == kMaxNodes) return;
+  open_.push_back({next.cost + kHeuristicWeight * next.cost_to_go, static_cast<std::int32_t>(nodes_.size())});
+  std::push_heap(open_.begin(), open_.end());
+  nodes_.push_back(next);
+}
+
+// A robot that drives stops first, which costs as much as a change of direction.
+void HybridAStarSearch::turn_on_spot(const DistanceField& field, std::int32_t index) {
+  const Node from = nodes_[static_cast<std::size_t>(index)];
+  for (const int side : {1, -1}) {
+    if (from.parent >= 0 && from.direction == 0 && from.from != side) continue;
+    const MotionPrimitives::MotionPrimitive& motion = primitives_.turn(side);
+    const std::int32_t there = state(from.pose * motion.poses.back(), 0);
+    if (there < 0 || closed_[static_cast<std::size_t>(there)] == round_) continue;
+    float most = 0;
+    for (const Pose2& pose : motion.poses) {
+      const float here = price(field, from.pose * pose, from.length < kLeaving);
+      most = here < 0 ? here : std::max(most, here);
+      if (here < 0) break;
+    }
+    if (most < 0) continue;
+    Node next = from;
+    next.pose = from.pose * motion.poses.back();
+    next.cost += most * static_cast<float>(params_.turn_cost);
+    if (from.direction != 0) next.cost += static_cast<float>(params_.change_cost);
+    next.parent = index;
+    next.level = -1;
+    next.direction = 0;
+    next.from = static_cast<std::int8_t>(side);
+    add(next);
   }
 }
 
@@ -185,7 +219,7 @@ bool HybridAStarSearch::connect_to_axis(const DistanceField& field, const Hybrid
     path.count = 1;
     path.direction_changes = 0;
   }
-  if (path.spots[path.count - 1].direction < 0) ++path.direction_changes;
+  if (path.spots[path.count - 1].direction < 1) ++path.direction_changes;
   const double end = kBehind - base_, spacing = primitives_.spacing();
   float cost = node.cost;
   for (double s = at.x; s + spacing / 2 < end;) {
@@ -282,11 +316,13 @@ void HybridAStarSearch::write(std::int32_t index, HybridAStarPath& path) const {
     const Node& before = nodes_[static_cast<std::size_t>(node.parent)];
     if (path.count + MotionPrimitives::kPoses > HybridAStarPath::kMax) {
       path.complete = false;  // A longer path consists of many manoeuvres; the rest is planned later.
+      while (path.count > 1 && path.spots[path.count - 1].direction == 0) --path.count;
       break;
     }
     if (path.count > 1 && path.spots[path.count - 1].direction != node.direction) ++path.direction_changes;
     const MotionPrimitives::MotionPrimitive& motion =
-        primitives_.motion(node.from, node.level, node.direction);
+        node.direction == 0 ? primitives_.turn(node.from)
+                            : primitives_.motion(node.from, node.level, node.direction);
     for (int i = 0; i < MotionPrimitives::kPoses; ++i) {
       const float share = static_cast<float>(i + 1) / MotionPrimitives::kPoses;
       path.spots[path.count++] = {before.pose * motion.poses[static_cast<std::size_t>(i)],

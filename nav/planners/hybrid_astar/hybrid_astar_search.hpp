@@ -26,6 +26,7 @@ struct HybridAStarSearchParams {
   double reverse_cost{1.6};  ///< Cost of a metre backwards relative to one forwards, [1, 10].
   double change_cost{0.8};   ///< Cost of a change of direction, m, [0, 10].
   double steer_cost{0.04};   ///< Cost of changing the curvature by one level, m, [0, 1].
+  double turn_cost{0.3};     ///< Cost of a turn on the spot by MotionPrimitives::kTurn, m, [0, 5].
   double least_gain{0.3};    ///< Minimum gain towards the target of a path that does not reach it, m, [0, 2].
   int expansions{3000};      ///< Maximum number of expanded nodes, [100, 20000].
 };
@@ -35,11 +36,12 @@ struct HybridAStarTask {
   int level{-1};     ///< Index of the present curvature; -1: the robot is so slow that it can start with any.
   int direction{0};  ///< Present driving direction, 1 or -1; 0: stationary.
   Eigen::Vector2d target{0, 0};
-  bool goal{true};                 ///< The target is a place to reach; else a direction.
-  bool tight{false};               ///< Uses only the tight margin.
-  int only{0};                     ///< Permitted driving direction, 1 or -1; 0: both.
-  double heading{0};               ///< Reference heading of the path (not of the body), rad.
-  double spread{M_PI};             ///< Maximum deviation from it, rad.
+  bool goal{true};      ///< The target is a place to reach; else a direction.
+  bool tight{false};    ///< Uses only the tight margin.
+  bool turns{false};    ///< May turn on the spot; with the tight margin it always may, if the robot can.
+  int only{0};          ///< Permitted driving direction, 1 or -1; 0: both.
+  double heading{0};    ///< Reference heading of the path (not of the body), rad.
+  double spread{M_PI};  ///< Maximum deviation from it, rad.
   std::optional<Pose2> passage{};  ///< The path must end behind a gap with this middle, straight through it.
   double room{0};                  ///< Width of that gap, m; 0: just wide enough for the body.
 };
@@ -50,8 +52,9 @@ struct HybridAStarPath {
   /// A pose of the path.
   struct Spot {
     Pose2 pose{};
-    float cost{};             ///< From the start, m.
-    std::int8_t direction{};  ///< Direction in which it is reached; for the first one: in which it is left.
+    float cost{};  ///< From the start, m.
+    /// Direction in which it is reached, 0: by a turn on the spot; for the first one: in which it is left.
+    std::int8_t direction{};
   };
   std::array<Spot, kMax> spots{};
   std::size_t count{0};
@@ -90,7 +93,9 @@ class HybridAStarSearch {
     Pose2 pose{};
     float cost{}, cost_to_go{}, length{};
     std::int32_t parent{-1};
-    std::int8_t level{}, direction{}, from{};  ///< `from`: curvature index at the start of its motion.
+    /// `direction` is 0 after a turn on the spot; `from`: curvature index at the start of its motion, or the
+    /// side of the turn.
+    std::int8_t level{}, direction{}, from{};
   };
   struct Open {
     float rank;
@@ -115,6 +120,8 @@ class HybridAStarSearch {
   std::int32_t state(const Pose2& pose, int direction) const;
   void expand(const DistanceField& field, const CostToGo& cost_to_go, const HybridAStarTask& task,
               std::int32_t index);
+  void turn_on_spot(const DistanceField& field, std::int32_t index);
+  void add(Node next);
   bool ends(const CostToGo& cost_to_go, const HybridAStarTask& task, const Node& node) const;
   void write(std::int32_t index, HybridAStarPath& path) const;
 
@@ -128,6 +135,7 @@ class HybridAStarSearch {
   float wide_{};       ///< Radius of the discs with the margin, m.
   Footprint outline_;  ///< With the tight margin.
   double front_;       ///< From the poses' origin to the foremost point of the body, m.
+  bool turns_;         ///< The robot can turn on the spot.
   bool tight_{false};  ///< The current search uses the tight margin.
   float depth_{0};     ///< Depth of the deepest point in the outline at the start, m.
   std::vector<Node> nodes_{};

@@ -26,6 +26,9 @@ MotionPrimitives::MotionPrimitives(const Platform& platform, const MotionPrimiti
         }
         primitives_.push_back(motion);
       }
+  for (const int side : {1, -1})
+    for (int i = 0; i < kPoses; ++i)
+      turns_[side > 0 ? 0 : 1].poses[static_cast<std::size_t>(i)] = {0, 0, side * kTurn * (i + 1) / kPoses};
 }
 
 int MotionPrimitives::level(double curvature) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "core/config/platform.hpp"
@@ -16,15 +17,16 @@ struct MotionPrimitiveParams {
   double car_share{0.92};
 };
 
-/// Motion primitives for robots that may not be able to turn on the spot: short motions between curvatures,
-/// forwards and backwards, from which a search builds paths. The curvature changes by at most one level per
-/// motion, linearly along the path (a clothoid), because wheels do not steer instantly. While the robot stops
-/// to change direction, they may be steered to any level. Poses are those of a car's rear axle, or of
-/// base_link for other drives.
+/// Motion primitives for robots of any drive: short motions between curvatures, forwards and backwards, and
+/// turns on the spot for robots that can, from which a search builds paths. The curvature changes by at most
+/// one level per motion, linearly along the path (a clothoid), because wheels do not steer instantly. While
+/// the robot stops to change direction, they may be steered to any level. Poses are those of a car's rear
+/// axle, or of base_link for other drives.
 class MotionPrimitives {
  public:
-  static constexpr int kLevels = 7;  ///< Number of curvatures; the middle one is straight.
-  static constexpr int kPoses = 5;   ///< Per motion, evenly spaced; the last one is its end.
+  static constexpr int kLevels = 7;          ///< Number of curvatures; the middle one is straight.
+  static constexpr int kPoses = 5;           ///< Per motion, evenly spaced; the last one is its end.
+  static constexpr double kTurn = M_PI / 4;  ///< rad
   /// The poses of one motion, relative to its start.
   struct MotionPrimitive {
     std::array<Pose2, kPoses> poses{};
@@ -36,6 +38,8 @@ class MotionPrimitives {
   const MotionPrimitive& motion(int from, int to, int direction) const {
     return primitives_[static_cast<std::size_t>(((direction > 0 ? 0 : kLevels) + from) * kLevels + to)];
   }
+  /// A turn on the spot by kTurn. `side`: 1 left, -1 right.
+  const MotionPrimitive& turn(int side) const { return turns_[side > 0 ? 0 : 1]; }
   double curvature(int level) const { return largest_ * (level - kLevels / 2) / (kLevels / 2); }
   /// Index of the nearest curvature; `curvature`: rad/m.
   int level(double curvature) const;
@@ -45,6 +49,7 @@ class MotionPrimitives {
  private:
   double step_, largest_;
   std::vector<MotionPrimitive> primitives_{};
+  std::array<MotionPrimitive, 2> turns_{};
 };
 
 }  // namespace adit::nav

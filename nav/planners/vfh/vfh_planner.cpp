@@ -32,7 +32,6 @@ Plan VfhPlanner::plan(const Target& target, const Pose2& pose, std::span<const O
   Plan plan{};
   plan.stamp_s = stamp_s;
   if (target.kind == Target::Kind::none) {
-    plan.reason = Reason::goal_missing;
     return plan;
   }
   const Eigen::Vector2d to = pose.inverse() * target.goal;
@@ -56,7 +55,6 @@ Plan VfhPlanner::plan(const Target& target, const Pose2& pose, std::span<const O
     plan.heading = static_cast<int>(std::lround(heading * 180 / M_PI));
   }
   plan.blocked = best > 1e8;
-  plan.reason = plan.blocked ? Reason::blocked : Reason::none;
   if (plan.blocked) return plan;
   const Pose2 start = pose * Pose2{0, 0, plan.heading * M_PI / 180};
   plan.length = kSpacing * std::floor(std::min(way, distance) / kSpacing);

@@ -78,7 +78,7 @@ void ConvoyFollowMode::tick(bool passes, Time now) {
   } else {
     context_.output.write(Stand{}, now);
   }
-  if (!passes || !target || !navigated_.unreachable) tried_ = now;
+  if (!passes || !target || !navigated_.unreachable()) tried_ = now;
   if (now - tried_ >= kTriesAfter) {
     tried_ = now;
     context_.convoy->target_refused();
@@ -104,7 +104,7 @@ Reason ConvoyFollowMode::watch(bool passes, Time now) {
   const auto pose = context_.pose();
   const std::string hindrance = context_.convoy->hindrance(now);
   const bool drives = passes && target && !navigated_.arrived && context_.convoy->speed_limit(true) > kSlow;
-  if (!passes || !target || !(navigated_.blocked || navigated_.unreachable)) free_since_ = now;
+  if (!passes || !target || !navigated_.blocked) free_since_ = now;
   const bool moved = pose && (!moved_at_ || (*moved_at_ - pose->position()).norm() > kMoved);
   if (moved) moved_at_ = pose->position();
   if (moved || (!drives && hindrance.empty())) moved_since_ = now;

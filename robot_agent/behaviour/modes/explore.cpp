@@ -67,7 +67,7 @@ void ExploreMode::tick(bool passes, Time now) {
 void ExploreMode::ask(Time now) {
   if (asked_ && now - *asked_ < kAnswerLost) return;
   if (last_asked_ && now - *last_asked_ < kAskPeriod) return;
-  const bool blocked = goal_ && is_given_up();
+  const bool blocked = goal_ && navigated_.gave_up();
   if (blocked) navigated_ = {};
   asked_ = last_asked_ = now;
   context_.explore({blocked, begins_, request_.area},
@@ -147,7 +147,7 @@ void ExploreMode::return_to(std::optional<Eigen::Vector2d> place) {
 void ExploreMode::tick_return() {
   const bool heard = request_.after == AfterExploring::report && context_.holder_heard();
   if (heard || navigated_.arrived) return finish();
-  if (!is_given_up()) return;
+  if (!navigated_.gave_up()) return;
   context_.notify_holder(Severity::warning, "unreachable", Reason::goal_unreachable,
                          request_.after == AfterExploring::home
                              ? "the robot explored, but found no way home"

@@ -44,7 +44,6 @@ class ExploreMode : public ModeModule {
   void ask(Time now);
   void answered(const nav::ExploreStep& step);
   /// Whether the goal was found blocked and is to be replaced.
-  bool is_given_up() const { return navigated_.unreachable || navigated_.gave_up; }
   /// Ends the search for new places and begins the last leg.
   void conclude(Reason reason, const std::string& text);
   void begin_return();

@@ -8,8 +8,9 @@ namespace {
 
 std::string text_of(const Progress& progress) {
   static constexpr std::array kSides{"", " ahead", " on its left", " behind it", " on its right"};
-  if (progress.in_collision != nav::Side::none)
-    return std::string("an obstacle touches the robot, or nearly,") +
+  if (progress.reason == Reason::stuck) return "no progress towards the goal for 45 s";
+  if (progress.reason == Reason::start_in_collision)
+    return std::string("an obstacle touches the robot, or nearly") +
            kSides[static_cast<std::size_t>(progress.in_collision)] + ", and no motion leads away from it";
   switch (progress.cause) {
     case nav::Cause::mover:
@@ -36,10 +37,10 @@ void WaypointMode::enter(Time) {
   driven_ = 0.0;
   last_.reset();
   used_up_ = false;
-  blocked_reported_ = false;
+  reported_ = Reason::none;
 }
 
-void WaypointMode::leave(Time) { unreachable_reported_ = blocked_reported_ = stuck_reported_ = false; }
+void WaypointMode::leave(Time) { unreachable_reported_ = false, reported_ = Reason::none; }
 
 void WaypointMode::clear() { goal_ = {.id = goal_.id}; }
 
@@ -86,23 +87,18 @@ void WaypointMode::limit_unknown(double metres) {
 }
 
 void WaypointMode::watch(GoalState state) {
-  const bool unreachable = state == GoalState::blocked && navigated_.unreachable && !used_up_;
+  const bool unreachable = state == GoalState::blocked && navigated_.unreachable() && !used_up_;
   if (unreachable && !unreachable_reported_)
     context_.notify_holder(Severity::warning, "unreachable", unreachable_because(),
-                           navigated_.reason == Reason::none ? "no way leads to the goal"
-                                                             : std::string(describe(navigated_.reason)));
+                           navigated_.refusal == Reason::none ? "no way leads to the goal"
+                                                              : std::string(describe(navigated_.refusal)));
   unreachable_reported_ = unreachable;
   if (state != GoalState::blocked || unreachable || used_up_) {
-    blocked_reported_ = false;
-  } else if (!blocked_reported_ && navigated_.waits && !navigated_.stuck) {
-    blocked_reported_ = true;
-    context_.notify_holder(Severity::warning, std::string(name(why_blocked())), why_blocked(),
-                           text_of(navigated_));
+    reported_ = Reason::none;
+  } else if (navigated_.reason != Reason::none && navigated_.reason != reported_) {
+    reported_ = navigated_.reason;
+    context_.notify_holder(Severity::warning, std::string(name(reported_)), reported_, text_of(navigated_));
   }
-  if (navigated_.stuck && !stuck_reported_)
-    context_.notify_holder(Severity::warning, "stuck", Reason::stuck,
-                           "no progress towards the goal for 45 s");
-  stuck_reported_ = navigated_.stuck;
 }
 
 Result<void> WaypointMode::check_goal(const Eigen::Vector3d& goal, Facts& facts) const {
@@ -131,15 +127,14 @@ ModeProgress WaypointMode::progress(bool passes) const {
             : navigated_.blocked ? GoalState::blocked
                                  : GoalState::active;
   if (p.state == GoalState::blocked)
-    p.reason = used_up_                 ? Reason::unknown_budget
-               : navigated_.unreachable ? unreachable_because()
-               : navigated_.stuck       ? Reason::stuck
-                                        : why_blocked();
+    p.reason = used_up_                   ? Reason::unknown_budget
+               : navigated_.unreachable() ? unreachable_because()
+                                          : why_blocked();
   return p;
 }
 
 Reason WaypointMode::why_blocked() const {
-  return navigated_.in_collision == nav::Side::none ? Reason::blocked : Reason::start_in_collision;
+  return navigated_.reason == Reason::none ? Reason::blocked : navigated_.reason;
 }
 
 void WaypointMode::store(StoredBehaviour& stored) const {

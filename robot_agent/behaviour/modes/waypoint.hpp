@@ -34,7 +34,7 @@ class WaypointMode : public ModeModule {
   void count(bool passes);
   /// Returns the reason why the goal cannot be reached.
   Reason unreachable_because() const {
-    return navigated_.reason == Reason::none ? Reason::goal_unreachable : navigated_.reason;
+    return navigated_.refusal == Reason::none ? Reason::goal_unreachable : navigated_.refusal;
   }
   Reason why_blocked() const;
 
@@ -49,7 +49,8 @@ class WaypointMode : public ModeModule {
   ModeContext context_;
   Goal goal_{};
   Progress navigated_{};
-  bool blocked_reported_{}, unreachable_reported_{}, stuck_reported_{};
+  bool unreachable_reported_{};
+  Reason reported_{Reason::none};  ///< Why the robot makes no progress, as its holder was notified last.
   double budget_{std::numeric_limits<double>::infinity()};  ///< Metres while the goal is unseen.
   double driven_{};                        ///< Metres of the budget since it was given or renewed.
   std::optional<Eigen::Vector2d> last_{};  ///< Where metres were counted last, map frame, m.

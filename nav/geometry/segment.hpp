@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <algorithm>
+
+namespace adit::nav {
+
+/// The part of the line from `from` to `to` that lies before its point nearest to `place`, [0, 1].
+inline double part_before(const Eigen::Vector2d& place, const Eigen::Vector2d& from,
+                          const Eigen::Vector2d& to) {
+  const Eigen::Vector2d way = to - from;
+  const double square = way.squaredNorm();
+  return square > 0.0 ? std::clamp((place - from).dot(way) / square, 0.0, 1.0) : 0.0;
+}
+
+}  // namespace adit::nav
