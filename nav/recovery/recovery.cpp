@@ -32,6 +32,8 @@ void Recovery::enter(RecoveryState state, const RecoveryInput& in) {
 
 void Recovery::give_up(Reason reason, const RecoveryInput& in) {
   enter(RecoveryState::give_up, in);
+  retries_ = false;
+  if (!in.blocked && !in.held) cause_ = Cause::none;
   reason_ = reason == Reason::blocked && side_ != Side::none ? Reason::start_in_collision : reason;
   rest_until_ = in.stamp_s + params_.rests * std::exp2(std::min(rests_, params_.doublings));
   ++rests_;
@@ -117,6 +119,7 @@ void Recovery::step(const RecoveryInput& in, bool other_route) {
     case RecoveryState::give_up:
       if (in.unreachable) reason_ = Reason::goal_unreachable;
       if (other_route && reason_ != Reason::stuck) {
+        hindered_since_.reset();
         enter(RecoveryState::drive, in);
       } else if (free && in.route == 0) {
         ask_ = RouteAsk::open;
@@ -125,6 +128,7 @@ void Recovery::step(const RecoveryInput& in, bool other_route) {
         progress_ = ProgressChecker();
         ends_ = ProgressChecker(params_.ends);
         replans_ = 0;
+        retries_ = true;
         if (in.start_blocked && in.route == 0) nudged_ = false;
         enter(RecoveryState::drive, in);
       }
@@ -147,7 +151,9 @@ RecoveryState Recovery::look(const RecoveryInput& in) {
     ends_ = ProgressChecker(params_.ends);
     no_route_since_.reset();
     hindered_since_.reset();
+    retries_ = false;
     cause_ = Cause::none;
+    last_ = {};
     enter(RecoveryState::drive, in);
   }
   const bool follows = in.route != 0, other_route = follows && in.route != route_;
@@ -158,6 +164,7 @@ RecoveryState Recovery::look(const RecoveryInput& in) {
   } else if (follows && in.left < least_ - params_.progress) {
     least_ = in.left;
     hindered_since_.reset();
+    retries_ = false;
     if (!spent_at_ || (in.at - *spent_at_).norm() >= params_.elsewhere) restore();
   }
   // Near the goal a robot that moves and comes no nearer has ended: the goal lies in or behind something.
@@ -168,7 +175,10 @@ RecoveryState Recovery::look(const RecoveryInput& in) {
   const bool hindered = in.blocked || in.held;
   const bool waits = state_ == RecoveryState::drive || state_ == RecoveryState::wait;
   if (hindered && waits) cause_ = in.cause, cause_ahead_ = in.cause_ahead;
-  if (hindered || (waits && !spent_at_)) note(hindered_since_, hindered, now);
+  if (hindered && !hindered_since_) hindered_since_ = now;
+  note(clear_since_, !hindered, now);
+  const bool clear = clear_since_ && now - *clear_since_ >= params_.blocked && waits && !spent_at_;
+  if (clear || in.stands) hindered_since_.reset();
   note(blocked_since_, hindered, now);
   note(free_since_, !hindered && in.ends_at_goal, now);
   note(no_route_since_, !follows, now);
@@ -181,7 +191,7 @@ RecoveryState Recovery::look(const RecoveryInput& in) {
     give_up(Reason::blocked, in);
   else if (!searches || (nudges && state_ == RecoveryState::nudge))
     step(in, other_route);
-  if (!gave_up()) {
+  if (!gave_up() && !retries_) {
     const bool reported = hindered_since_ && now - *hindered_since_ >= params_.reported;
     reason_ = reported ? Reason::blocked : Reason::none;
   }

@@ -29,7 +29,7 @@ struct RecoveryParams {
   double progress{0.5};      ///< Progress on the route that restores the attempts, m.
   double elsewhere{2.0};     ///< It counts at this distance from where they were used, m.
   double near{1.0};          ///< So near to the goal a robot must come nearer, m.
-  /// When it has not for so long, it ends.
+  /// Without that progress near the goal it ends after that time.
   ProgressParams ends{.gain = 0.1, .time = 8.0, .detours = 0};
 };
 
@@ -134,13 +134,15 @@ class Recovery {
   double since_{};                          ///< When the state began, s.
   Eigen::Vector2d from_{0, 0};              ///< Where it began, m.
   std::optional<double> hindered_since_{};  ///< Without progress since then, s.
+  std::optional<double> clear_since_{};     ///< s
   std::optional<double> blocked_since_{};   ///< s
   std::optional<double> free_since_{};      ///< s
   std::optional<double> no_route_since_{};  ///< s
   bool nudged_{}, backed_up_{};
   bool leaves_{};  ///< The nudge is one from what the planner passes, but not the collision monitor.
   int replans_{}, rests_{};
-  std::optional<Eigen::Vector2d> spent_at_{};              ///< Where an attempt was made last, m.
+  bool retries_{};                             ///< It tries again after it gave up, and the reason stays.
+  std::optional<Eigen::Vector2d> spent_at_{};  ///< Where an attempt was made last, m.
   double least_{std::numeric_limits<double>::infinity()};  ///< Least rest of this route, m.
   double rest_until_{};
   Target last_{};

@@ -92,7 +92,7 @@ void RouteFollower::look_around(RoutePlanner& planner, const RouteRequest& reque
     end = false;
   }
   if (end) return;
-  planner.block({there.x(), there.y(), request.place.z()}, request.stamp_s);
+  planner.block(there, request.stamp_s);
   Route other = planner.plan(request.place, request.goal);
   if (!other.found() && request.ask == RouteAsk::around_if_found) return planner.unblock_last();
   passage_.reset();
@@ -262,7 +262,7 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
   if (!goal_id_ || *goal_id_ != request.goal_id) clear();
   if (!goal_id_) goal_ = request.goal;
   goal_id_ = request.goal_id;
-  const bool asked = request.ask != RouteAsk::none, open = request.ask == RouteAsk::open;
+  const bool open = request.ask == RouteAsk::open, asked = request.ask != RouteAsk::none && !open;
   if (planner.map().used() == 0) return {.replanned = asked};
   if (open) {
     planner.unblock();
@@ -270,7 +270,7 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
   }
   if (route_.found()) {
     advance(planner, place);
-    if (asked && !open) look_around(planner, request);
+    if (asked) look_around(planner, request);
   }
   const bool lost = route_.found() && !planner.measure(route_);
   const bool usable = route_.found() && !lost;

@@ -65,7 +65,7 @@ struct RouteStep {
   std::uint32_t unknown_ahead{};  ///< Bit i: the leg from corner i leads through unknown space.
   std::size_t corners{};          ///< Number of all corners of the rest of the route.
   double length{0};               ///< Length of the rest of the route, m; 0 without a route.
-  bool replanned{};               ///< Answers a RouteAsk.
+  bool replanned{};               ///< Answers the request for another way.
 };
 
 /// Follows a route with hysteresis: replaces the current route only when a new one is clearly better or the

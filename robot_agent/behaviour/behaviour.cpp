@@ -175,6 +175,7 @@ void Behaviour::change_to(const ModeRow& row, Time now) {
   ++modes_begun_;
   if (ModeModule* left = module(*running_)) left->leave(now);
   running_ = &row;
+  recovery_ = contract::RecoveryState::drive;
 }
 
 void Behaviour::count_request() {

@@ -58,7 +58,7 @@ struct GoTo {
 /// Navigation's progress towards the place that was requested last.
 struct Progress {
   bool arrived{};
-  bool blocked{};        ///< Every path is blocked, or was and the robot made no progress since.
+  bool blocked{};        ///< Every path is blocked.
   bool goal_seen{true};  ///< The ground at the goal is known.
   Reason reason{};   ///< Why it makes no progress: see nav::Recovery. None: nothing is to be reported yet.
   Reason refusal{};  ///< With goal_unreachable: what is wrong with the goal itself, if that is known.

@@ -426,7 +426,7 @@ void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
   const Reason reason = recovery_.reason();
   const bool refused = reason == Reason::goal_unreachable && nav::is_refused(step->goal);
   outputs_.progress({.arrived = arrived,
-                     .blocked = plan.blocked || held || reason != Reason::none,
+                     .blocked = plan.blocked || held || recovery_.gave_up(),
                      .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
                      .reason = reason,
                      .refusal = refused ? reason_of(step->goal) : Reason::none,

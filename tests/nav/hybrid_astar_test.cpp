@@ -304,6 +304,23 @@ TEST(HybridAStarSearch, TurnsOnTheSpotWhereThatIsFree) {
   }
 }
 
+TEST(HybridAStarSearch, NoPathIsATurnAlone) {
+  DistanceField field;
+  CostToGo cost_to_go;
+  field.fill(corner());
+  HybridAStarSearch search(wheeled());
+  for (const Eigen::Vector2d& target : {Eigen::Vector2d(0.05, 0.0), Eigen::Vector2d(0.0, 0.3)}) {
+    HybridAStarTask task{};
+    task.target = target;
+    task.turns = true;
+    cost_to_go.fill(field, task.target, 0.31f);
+    HybridAStarPath path;
+    if (search.find(field, cost_to_go, task, path)) {
+      EXPECT_NE(path.spots[path.count - 1].direction, 0);
+    }
+  }
+}
+
 TEST(HybridAStarPlanner, FollowsATurnOnTheSpotToItsEndAndDrivesOn) {
   HybridAStarPlanner planner(wheeled());
   const auto walls = corner();

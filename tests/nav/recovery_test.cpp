@@ -73,6 +73,34 @@ TEST_F(RecoveryTest, WhatStandsInTheWayIsReportedWhileItTriesUntilItMakesProgres
   EXPECT_EQ(recovery.reason(), Reason::none);
 }
 
+TEST_F(RecoveryTest, ADoorThatOpensLeavesNothingToReport) {
+  in.blocked = true;
+  in.cause = Cause::fixed;
+  look(3.5);
+  in.route = 0;
+  in.unreachable = true;
+  look(20);
+  EXPECT_EQ(recovery.reason(), Reason::goal_unreachable);
+  in.route = 2;
+  in.unreachable = in.blocked = false;
+  look(0.1);
+  EXPECT_EQ(recovery.state(), RecoveryState::drive);
+  EXPECT_EQ(recovery.reason(), Reason::none);
+}
+
+TEST_F(RecoveryTest, AMomentWithAFreePathIsNoWayOut) {
+  in.cause = Cause::fixed;
+  for (int n = 0; n < 4; ++n) {
+    in.blocked = true;
+    look(0.9);
+    in.blocked = false;
+    look(0.1);
+  }
+  EXPECT_EQ(recovery.reason(), Reason::blocked);
+  look(1.1);
+  EXPECT_EQ(recovery.reason(), Reason::none);
+}
+
 TEST_F(RecoveryTest, TriesEachThingOnceThenAnotherWayThenStands) {
   in.blocked = true;
   in.cause = Cause::fixed;
@@ -139,8 +167,8 @@ TEST_F(RecoveryTest, WaitsForWhatMovesAndGoesOn) {
   EXPECT_EQ(recovery.state(), RecoveryState::wait);
   in.blocked = false;
   EXPECT_EQ(look(0.2), RecoveryState::drive);
-  EXPECT_EQ(recovery.reason(), Reason::none);
-  EXPECT_NE(recovery.reason(), Reason::stuck) << "waiting is not being stuck";
+  look(1.0);
+  EXPECT_EQ(recovery.reason(), Reason::none) << "waiting is not being stuck";
 }
 
 TEST_F(RecoveryTest, WhatStoppedMovingIsAnObstacle) {

@@ -6,15 +6,16 @@ namespace adit::sim {
 namespace {
 
 /// r1 is sent from one room to the other, through a door 1 m wide. `rest`: more of the scenario.
-RunReport run_door(const std::string& robots, const std::string& rest, std::uint64_t seed,
-                   const std::string& platform = "wheeled") {
+RunReport run_door(const std::string& robots, const std::string& rest, std::uint64_t seed) {
   return run_text(
       "world: {boxes: [[-6, 14, 4, 4.3, 0, 3], [-6, 14, -4.3, -4, 0, 3], [-6.3, -6, -4.3, 4.3, 0, 3], "
       "[14, 14.3, -4.3, 4.3, 0, 3], [5, 5.3, 0.5, 4, 0, 3], [5, 5.3, -4, -0.5, 0, 3]], floor: 0, ceiling: "
       "3}\n"
       "seed: " +
-          std::to_string(seed) + "\nlink: wifi\nlidar: planar\nrobots:\n  - {id: r1, platform: " + platform +
-          ", pose: [0, 0, 0]}\n" + robots +
+          std::to_string(seed) +
+          "\nlink: wifi\nlidar: planar\nrobots:\n  - {id: r1, platform: wheeled, "
+          "pose: [0, 0, 0]}\n" +
+          robots +
           "basestations:\n  - {id: op1, pose: [0, 0]}\nscript:\n  - {at: 2, by: op1, do: take r1}\n"
           "  - {at: 3, by: op1, do: goto r1 9 0}\n" +
           rest + "  - {always: no_collision}\n",

@@ -199,7 +199,7 @@ void HybridAStarPlanner::adopt(const Pose2& rear) {
 }
 
 std::size_t HybridAStarPlanner::end_of_part(std::size_t begin) const {
-  std::size_t i = begin + 1;
+  std::size_t i = std::min(begin + 1, current_.count - 1);
   while (i + 1 < current_.count && current_.spots[i + 1].direction == current_.spots[begin + 1].direction)
     ++i;
   return i;

@@ -281,7 +281,7 @@ bool HybridAStarSearch::find(const DistanceField& field, const CostToGo& cost_to
       closed_[there] = round_;
       if (task.passage) {
         if (expand_analytically(field, task, index, path)) return true;
-      } else if (ends(cost_to_go, task, node)) {
+      } else if (node.direction != 0 && ends(cost_to_go, task, node)) {
         path.complete = true;
         write(index, path);
         return path.count > 1;

@@ -43,7 +43,6 @@ class ExploreMode : public ModeModule {
   void begin();
   void ask(Time now);
   void answered(const nav::ExploreStep& step);
-  /// Whether the goal was found blocked and is to be replaced.
   /// Ends the search for new places and begins the last leg.
   void conclude(Reason reason, const std::string& text);
   void begin_return();

@@ -10,8 +10,8 @@ std::string text_of(const Progress& progress) {
   static constexpr std::array kSides{"", " ahead", " on its left", " behind it", " on its right"};
   if (progress.reason == Reason::stuck) return "no progress towards the goal for 45 s";
   if (progress.reason == Reason::start_in_collision)
-    return std::string("an obstacle touches the robot, or nearly") +
-           kSides[static_cast<std::size_t>(progress.in_collision)] + ", and no motion leads away from it";
+    return std::string("an obstacle") + kSides[static_cast<std::size_t>(progress.in_collision)] +
+           " touches the robot, or nearly, and no motion leads away from it";
   switch (progress.cause) {
     case nav::Cause::mover:
       return "something that moves is in the way; the robot waits for it";
@@ -23,7 +23,8 @@ std::string text_of(const Progress& progress) {
     case nav::Cause::none:
       break;
   }
-  return "every path to the goal is blocked";
+  return progress.gave_up() ? "every path to the goal is blocked"
+                            : "an obstacle is in the way; the robot tries to pass it";
 }
 
 }  // namespace
@@ -93,9 +94,10 @@ void WaypointMode::watch(GoalState state) {
                            navigated_.refusal == Reason::none ? "no way leads to the goal"
                                                               : std::string(describe(navigated_.refusal)));
   unreachable_reported_ = unreachable;
-  if (state != GoalState::blocked || unreachable || used_up_) {
+  const bool drives = state == GoalState::active || state == GoalState::blocked;
+  if (!drives || navigated_.reason == Reason::none || unreachable || used_up_) {
     reported_ = Reason::none;
-  } else if (navigated_.reason != Reason::none && navigated_.reason != reported_) {
+  } else if (navigated_.reason != reported_) {
     reported_ = navigated_.reason;
     context_.notify_holder(Severity::warning, std::string(name(reported_)), reported_, text_of(navigated_));
   }
