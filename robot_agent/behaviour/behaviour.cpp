@@ -295,6 +295,8 @@ void Behaviour::program(const Twist2& velocity, Time now) {
 }
 
 void Behaviour::set_progress(const Progress& progress) {
+  static_assert(static_cast<int>(contract::RecoveryState::give_up) ==
+                static_cast<int>(nav::RecoveryState::give_up));
   recovery_ = static_cast<contract::RecoveryState>(progress.recovery);
   if (ModeModule* current = module(*decision_.mode)) current->navigated(progress);
 }

@@ -96,12 +96,13 @@ void read_always(const Node& node, const Scenario& scenario, Expectation& out) {
     out.what = PlaceExpectation{which == 2, read_area(node), robots};
 }
 
-Reason read_reason(const Node& node, const char* key) {
+// `examples`: of what may be written.
+Reason read_reason(const Node& node, const char* key, const std::string& examples) {
   Reason out{Reason::none};
   const std::string text = node.text(key);
   if (node.has(key) && !reason_from_name(text, out))
     node.child(key).fail(Reason::bad_argument,
-                         "expected the name of a reason (locked, not_holder, ...), not " + text);
+                         "expected the name of a reason (" + examples + "), not " + text);
   return out;
 }
 
@@ -176,7 +177,8 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
     out.what = NoticeExpectation{read_station(node, "by_operator", scenario), node.text("notified"),
                                  read_robot(node, "robot", scenario)};
   } else if (node.has("told")) {
-    out.what = ReasonExpectation{read_robot(node, "robot", scenario), read_reason(node, "told")};
+    out.what = ReasonExpectation{read_robot(node, "robot", scenario),
+                                 read_reason(node, "told", "blocked, stuck, ...")};
   } else if (node.has("convoy")) {
     const std::string leader = read_robot(node, "convoy", scenario);
     ConvoyExpectation convoy{read_robots(node, "order", scenario)};
@@ -192,7 +194,8 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
     }
     out.what = line;
   } else if (node.has("by_operator")) {
-    out.what = AnswerExpectation{read_station(node, "by_operator", scenario), read_reason(node, "refused")};
+    out.what = AnswerExpectation{read_station(node, "by_operator", scenario),
+                                 read_reason(node, "refused", "locked, not_holder, ...; none: accepted")};
   } else {
     read_robot_expectation(node, scenario, out);
   }

@@ -138,9 +138,7 @@ Plan FalcoPlanner::plan(const Target& target, const Pose2& pose, std::span<const
 
   const bool nowhere =
       target.kind == Target::Kind::none || (target.kind == Target::Kind::direction && target.speed <= 0.0);
-  if (nowhere) {
-    return plan;
-  }
+  if (nowhere) return plan;
   if (goal.distance <= (target.tolerance > 0.0 ? target.tolerance : params_.tolerance)) {
     plan.arrived = true;
     return plan;

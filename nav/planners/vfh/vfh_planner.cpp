@@ -31,9 +31,7 @@ Plan VfhPlanner::plan(const Target& target, const Pose2& pose, std::span<const O
                       double stamp_s) {
   Plan plan{};
   plan.stamp_s = stamp_s;
-  if (target.kind == Target::Kind::none) {
-    return plan;
-  }
+  if (target.kind == Target::Kind::none) return plan;
   const Eigen::Vector2d to = pose.inverse() * target.goal;
   const bool goal = target.kind == Target::Kind::goal;
   const double distance = goal ? to.norm() : kFarthest;
