@@ -6,30 +6,22 @@
 #include <cmath>
 
 namespace adit::nav {
-namespace {
 
-constexpr float kBeforeOthers = 2.5f;        ///< So near to a peer a path must lead past it, m.
-constexpr std::size_t kMaxPredicted = 8192;  ///< Maximum number of predicted places of movers.
-
-}  // namespace
-
-LocalNavigation::LocalNavigation(const Platform& platform, const TerrainParams& terrain,
-                                 const FalcoPlannerParams& planner,
-                                 std::shared_ptr<const PlannerLibrary> library)
-    : LocalNavigation(platform, terrain, [platform, planner, library = std::move(library)] {
-        return make_planner(platform, planner, library).value();
+LocalNavigation::LocalNavigation(const Platform& platform, std::shared_ptr<const PlannerLibrary> library)
+    : LocalNavigation(platform, [platform, library = std::move(library)] {
+        return make_planner(platform, library).value();
       }) {}
 
-LocalNavigation::LocalNavigation(const Platform& platform, const TerrainParams& terrain,
-                                 PlannerFactory planner)
+LocalNavigation::LocalNavigation(const Platform& platform, PlannerFactory planner)
     : platform_(platform),
       make_planner_(std::move(planner)),
-      terrain_(platform, terrain),
+      terrain_(platform),
       tracker_(platform),
       planner_(make_planner_()),
       escape_(platform),
       way_back_(platform) {
   if (platform.flies()) air_.emplace(platform);
+  constexpr std::size_t kMaxPredicted = 8192;  // Maximum number of predicted places of movers.
   obstacles_.reserve(std::max<std::size_t>(terrain_.max_cells(), AirMap::kMax) + kMaxPredicted);
 }
 
@@ -44,18 +36,12 @@ void LocalNavigation::add_scan(const ScanPoints& scan, const Pose3& body, double
 
 Plan LocalNavigation::plan(const Target& target, const Pose2& pose, double stamp_s,
                            std::span<const Eigen::Vector2f> border, std::span<const Eigen::Vector3f> peers) {
-  if (!has_scan_) {
-    Plan plan;
-    plan.stamp_s = stamp_s;
-    plan.blocked = true;
-    return plan;
-  }
-  const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
-  const auto x0 = static_cast<float>(pose.x), y0 = static_cast<float>(pose.y);
+  if (!has_scan_) return {.stamp_s = stamp_s, .blocked = true};
+  const IntoPose into(pose);
   obstacles_.clear();
   const auto add = [&](float x, float y, float cost) {
-    const float dx = x - x0, dy = y - y0;
-    obstacles_.push_back({c * dx + s * dy, c * dy - s * dx, cost});
+    const Eigen::Vector2f at = into(x, y);
+    obstacles_.push_back({at.x(), at.y(), cost});
   };
   if (air_)
     for (const Eigen::Vector2f& cell : air_->cells()) add(cell.x(), cell.y(), 1.0f);
@@ -69,17 +55,14 @@ Plan LocalNavigation::plan(const Target& target, const Pose2& pose, double stamp
   predict(tracker_.movers(), age, pose, moves, platform_, obstacles_);
   Plan plan = plan_path(target, pose, stamp_s, parts);
   plan.stamp_s = stamp_s;
+  constexpr float kBeforeOthers = 2.5f;  // So near to a peer a path must lead past it, m.
   const bool others = !peers.empty() || !tracker_.movers().empty();
   if (plan.blocked || (target.kind == Target::Kind::goal && others && !plan.arrived && !plan.nudge)) {
     const Hindrance found = hindrance(target, pose, parts, peers);
     // A path that does not lead past a robot of the team leads to and fro before it.
     const bool aside = !plan.blocked && !plan.ends_at_goal && found.cause == Cause::peer &&
                        found.along < kBeforeOthers && plan.reached < found.along;
-    if (aside) {
-      plan = {.clearance = plan.clearance};
-      plan.stamp_s = stamp_s;
-      plan.blocked = true;
-    }
+    if (aside) plan = {.stamp_s = stamp_s, .blocked = true, .clearance = plan.clearance};
     if (plan.blocked || found.along < kBeforeOthers) {
       plan.cause = found.cause;
       plan.cause_ahead = found.along;

@@ -23,20 +23,18 @@ using PlannerFactory = std::function<std::unique_ptr<Planner>()>;
 class LocalNavigation {
  public:
   /// Throws when the platform names an unknown planner: see make_planner.
-  explicit LocalNavigation(const Platform& platform, const TerrainParams& terrain = {},
-                           const FalcoPlannerParams& planner = {},
-                           std::shared_ptr<const PlannerLibrary> library = nullptr);
+  explicit LocalNavigation(const Platform& platform, std::shared_ptr<const PlannerLibrary> library = nullptr);
   /// Uses a local planner of the caller instead of the one that the platform names. `planner` never returns
   /// null.
-  LocalNavigation(const Platform& platform, const TerrainParams& terrain, PlannerFactory planner);
+  LocalNavigation(const Platform& platform, PlannerFactory planner);
 
   /// See TerrainMap::add_scan.
   void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
   /// Plans over the terrain seen so far; see Planner::plan, and WayBack and Escape for the targets `back_up`
   /// and `leave`. A blocked plan has a cause. A plan to leave names the side of what nearly touches the body,
-  /// and is blocked when no motion leads away from it. Before the first scan no space is known to be free, and
-  /// the plan is blocked. `border`: places that no path may touch; `peers`: centre and radius of the other
-  /// robots; odometry frame, m.
+  /// and is blocked when no motion leads away from it. Before the first scan no space is known to be free,
+  /// and the plan is blocked. `border`: places that no path may touch; `peers`: centre and radius of the
+  /// other robots; odometry frame, m.
   Plan plan(const Target& target, const Pose2& pose, double stamp_s,
             std::span<const Eigen::Vector2f> border = {}, std::span<const Eigen::Vector3f> peers = {});
 

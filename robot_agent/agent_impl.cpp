@@ -83,8 +83,8 @@ UnitParams Agent::Impl::planner_unit() {
 UnitParams Agent::Impl::router_unit() {
   return {
       .name = "router", .dedicated = true, .make = [this](Executor& strand) -> std::unique_ptr<Component> {
-        return std::make_unique<Router>(RouterParams{.platform = params.platform}, strand,
-                                        Log(params.log, params.name), *context->router);
+        return std::make_unique<Router>(params.platform, strand, Log(params.log, params.name),
+                                        *context->router);
       }};
 }
 
@@ -299,8 +299,7 @@ std::shared_ptr<const nav::PlannerLibrary> Agent::Impl::library() {
     const std::lock_guard lock(mutex_);
     if (library_) return library_;
   }
-  auto made =
-      params.library ? params.library(params.platform) : nav::PlannerLibrary::build(params.platform, {});
+  auto made = params.library ? params.library(params.platform) : nav::PlannerLibrary::build(params.platform);
   const std::lock_guard lock(mutex_);
   return library_ = std::move(made);
 }

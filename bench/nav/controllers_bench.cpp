@@ -114,10 +114,9 @@ void step(benchmark::State& state, const std::string& name, const Platform& plat
   state.counters["error_mm"] = error_mm(name, platform);
 }
 
-#define ADIT_MODELS(function)                                              \
-  BENCHMARK(function<model::Unicycle>)->Unit(benchmark::kMicrosecond);     \
-  BENCHMARK(function<model::Differential>)->Unit(benchmark::kMicrosecond); \
-  BENCHMARK(function<model::Car>)->Unit(benchmark::kMicrosecond);          \
+#define ADIT_MODELS(function)                                          \
+  BENCHMARK(function<model::Unicycle>)->Unit(benchmark::kMicrosecond); \
+  BENCHMARK(function<model::Car>)->Unit(benchmark::kMicrosecond);      \
   BENCHMARK(function<model::Holonomic>)->Unit(benchmark::kMicrosecond)
 ADIT_MODELS(solve);
 ADIT_MODELS(ceres_solve);

@@ -10,6 +10,9 @@ namespace adit {
 /// the ground next to the object, along gravity. For an aerial robot only `headroom`, `half_width` and
 /// `radius` count.
 struct Traversability {
+  /// Height of the lowest return of a stair's riser above its foot when seen from below, m.
+  static constexpr double kRiser = 0.06;
+
   double step{};  ///< Highest step that the body climbs, m.
   /// A step higher than this, as the lidar measures it, is an obstacle, m: `step` plus noise.
   double obstacle{};

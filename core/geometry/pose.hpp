@@ -37,6 +37,38 @@ struct Pose2 {
   bool operator==(const Pose2&) const = default;
 };
 
+/// A pose in the plane with its cosine and sine, which Pose2 computes again for each point that it
+/// transforms. Its points are equal to those of Pose2 bit by bit.
+class PlanarTransform {
+ public:
+  explicit PlanarTransform(const Pose2& pose)
+      : x_(pose.x), y_(pose.y), cos_(std::cos(pose.yaw)), sin_(std::sin(pose.yaw)) {}
+
+  /// Transforms a point from the pose's frame to the frame in which the pose is given, m.
+  Eigen::Vector2d operator*(const Eigen::Vector2d& p) const {
+    return {x_ + cos_ * p.x() - sin_ * p.y(), y_ + sin_ * p.x() + cos_ * p.y()};
+  }
+
+ private:
+  double x_, y_, cos_, sin_;
+};
+
+/// The inverse of a pose in the plane, in float, for many points: from the frame in which the pose is given
+/// to the pose's own frame.
+struct IntoPose {
+  float x, y, cos, sin;
+
+  explicit IntoPose(const Pose2& pose)
+      : x(static_cast<float>(pose.x)),
+        y(static_cast<float>(pose.y)),
+        cos(static_cast<float>(std::cos(pose.yaw))),
+        sin(static_cast<float>(std::sin(pose.yaw))) {}
+  /// Turns a direction into the pose's axes.
+  Eigen::Vector2f turn(float dx, float dy) const { return {cos * dx + sin * dy, cos * dy - sin * dx}; }
+  /// Transforms a point, m.
+  Eigen::Vector2f operator()(float px, float py) const { return turn(px - x, py - y); }
+};
+
 /// A pose in space: position in m, orientation as a unit quaternion.
 struct Pose3 {
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};
@@ -58,6 +90,9 @@ struct Pose3 {
   /// Returns the level pose that has the planar pose `p` and height z.
   static Pose3 level(const Pose2& p, double z) {
     return {{p.x, p.y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(p.yaw, Eigen::Vector3d::UnitZ()))};
+  }
+  bool operator==(const Pose3& b) const {
+    return position == b.position && orientation.coeffs() == b.orientation.coeffs();
   }
 };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nav/areas/side.hpp"
+#include "nav/geometry/segment.hpp"
 
 namespace adit::nav {
 namespace {

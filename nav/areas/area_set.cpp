@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "nav/areas/side.hpp"
+#include "nav/geometry/segment.hpp"
 
 namespace adit::nav {
 namespace {
@@ -65,9 +65,8 @@ std::vector<BorderPiece> border_of(const std::vector<Area>& areas, double z) {
       for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
         if ((cuts[k + 1] - cuts[k]) * way.norm() < kShortest) continue;
         const Eigen::Vector2d beyond = side.from + (cuts[k] + cuts[k + 1]) / 2 * way + out;
-        const bool inside = std::any_of(areas.begin(), areas.end(), [&](const Area& other) {
-          return joins(other) && other.contains(beyond);
-        });
+        const bool inside = std::ranges::any_of(
+            areas, [&](const Area& other) { return joins(other) && other.contains(beyond); });
         if (!inside) border.push_back({side.from + cuts[k] * way, side.from + cuts[k + 1] * way, kKeepIn});
       }
     }
@@ -129,7 +128,7 @@ std::span<const Area> AreaSet::all() const {
 
 const Area* AreaSet::find(std::string_view name) const {
   const auto areas = all();
-  const auto found = std::find_if(areas.begin(), areas.end(), [&](const Area& a) { return a.name == name; });
+  const auto found = std::ranges::find(areas, name, &Area::name);
   return found == areas.end() ? nullptr : &*found;
 }
 
@@ -139,8 +138,7 @@ bool AreaSet::operator==(const AreaSet& other) const {
 
 Result<void> AreaSet::add(Area area) {
   std::vector<Area> areas(all().begin(), all().end());
-  const auto old =
-      std::find_if(areas.begin(), areas.end(), [&](const Area& a) { return a.name == area.name; });
+  const auto old = std::ranges::find(areas, area.name, &Area::name);
   if (old != areas.end())
     *old = std::move(area);
   else if (areas.size() < kMax)
@@ -256,9 +254,8 @@ bool AreaSet::permits(std::span<const Eigen::Vector2d> outline, double z) const 
   if (empty()) return true;
   for (const Eigen::Vector2d& corner : outline)
     if (!permits(Eigen::Vector3d(corner.x(), corner.y(), z))) return false;
-  const auto pieces = border(z);
-  return std::none_of(pieces.begin(), pieces.end(),
-                      [&](const BorderPiece& piece) { return part_within(piece, outline).has_value(); });
+  return std::ranges::none_of(
+      border(z), [&](const BorderPiece& piece) { return part_within(piece, outline).has_value(); });
 }
 
 bool AreaSet::leaves_room(const Area& area) const {
@@ -299,7 +296,7 @@ std::span<const BorderPiece> AreaSet::border(double z) const {
   if (!content_) return {};
   const auto& levels = content_->levels;
   const auto above = std::upper_bound(levels.begin(), levels.end(), z);
-  return content_->borders[static_cast<std::size_t>(above - levels.begin())];
+  return content_->borders[above - levels.begin()];
 }
 
 std::vector<Eigen::Vector2d> outline(const Platform& platform, const Pose2& pose, double margin) {

@@ -10,6 +10,11 @@
 namespace adit::nav {
 namespace {
 
+// Above this heading error at its path's start a robot turns on the spot, rad.
+constexpr double kTurnFrom = 0.45;
+constexpr double kTurnUntil = 0.12;  ///< It ends that turn below this heading error, rad.
+// Time constant of the estimate of the turn effectiveness of tracks, s.
+constexpr double kGripMemory = 3.0;
 constexpr double kStanding = 0.12;  ///< Below this speed a turn on the spot may begin, m/s.
 /// Below this speed a velocity does not define a car's steering angle, m/s.
 constexpr double kNoDirection = 1e-3;
@@ -21,8 +26,7 @@ double stepped(double from, double to, double step) { return from + std::clamp(t
 
 }  // namespace
 
-Controller::Controller(const Platform& platform, const ControllerParams& params)
-    : platform_(platform), params_(params), grip_(1.0 - platform.turn_slip) {}
+Controller::Controller(const Platform& platform) : platform_(platform), grip_(1.0 - platform.turn_slip) {}
 
 Twist2 Controller::stop_now() {
   plan_ = {};
@@ -62,7 +66,7 @@ void Controller::sent(const Twist2& velocity) {
 void Controller::learn_grip(const Pose2& odom, double dt) {
   constexpr double kEnough = 0.05;  // rad2/s: a smaller sum is too noisy.
   if (yaw_before_) {
-    const double keep = std::exp(-dt / params_.grip_memory);
+    const double keep = std::exp(-dt / kGripMemory);
     asked_ = keep * asked_ + sent_turn_ * sent_turn_ * dt;
     come_ = keep * come_ + sent_turn_ * wrap_angle(odom.yaw - *yaw_before_);
     if (asked_ > kEnough) grip_ = std::clamp(come_ / asked_, 0.2, 1.0);
@@ -83,21 +87,15 @@ Twist2 Controller::desired(const Pose2& odom, double dt) {
     return {};
   }
   Place place{};
-  double best = 1e30;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const double d = (path[i].position() - odom.position()).squaredNorm();
-    if (d < best) {
-      best = d;
-      place.nearest = i;
-    }
-  }
+  const auto off_path = [&odom](const Pose2& p) { return (p.position() - odom.position()).squaredNorm(); };
+  place.nearest = static_cast<std::size_t>(std::ranges::min_element(path, {}, off_path) - path.begin());
   const double spacing = plan_.length / static_cast<double>(path.size() - 1);
   place.remaining = spacing * static_cast<double>(path.size() - 1 - place.nearest);
 
   double error = wrap_angle(path[place.nearest].yaw - odom.yaw);
   const double off = std::fabs(error);
   const bool turns = turning_ || plan_.turn_first;
-  turning_ = platform_.turns_on_spot() && off > (turns ? params_.turn_until : params_.turn_from);
+  turning_ = platform_.turns_on_spot() && off > (turns ? kTurnUntil : kTurnFrom);
   if (turning_) {
     rest();
     // The planner may have found that only the longer turn is free.
@@ -109,8 +107,7 @@ Twist2 Controller::desired(const Pose2& odom, double dt) {
 
 Twist2 Controller::turn_on_spot(double error) const {
   if (std::hypot(last_.vx, last_.vy) > kStanding) return {};
-  const double rate =
-      std::sqrt(2 * params_.braking_share * platform_.max_turn_acceleration * std::fabs(error));
+  const double rate = std::sqrt(2 * kBrakingShare * platform_.max_turn_acceleration * std::fabs(error));
   return {0, 0, std::copysign(std::min(platform_.max_turn, rate), error)};
 }
 

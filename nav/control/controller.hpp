@@ -11,22 +11,12 @@
 
 namespace adit::nav {
 
-/// Parameters that all controllers share.
-struct ControllerParams {
-  /// Starts to turn on the spot above this heading error at the path's start, rad, [0.1, 3].
-  double turn_from{0.45};
-  double turn_until{0.12};    ///< Ends the turn on the spot below this heading error, rad, [0.02, turn_from].
-  double braking_share{0.7};  ///< Fraction of the platform's acceleration used for planned braking, (0, 1].
-  /// Tracked robots: time constant of the estimate of turn effectiveness, s, [0.5, 60].
-  double grip_memory{3.0};
-};
-
 /// Computes velocity commands that follow a plan. The base class turns on the spot where the path starts to
 /// the side and limits accelerations and a car's steering rate; subclasses implement the path tracking.
 /// Controllers do not see obstacles: the planner avoids them, and the CollisionMonitor checks every command.
 class Controller {
  public:
-  Controller(const Platform& platform, const ControllerParams& params);
+  explicit Controller(const Platform& platform);
   virtual ~Controller() = default;
 
   /// Sets the plan to follow (copied). An empty plan brings the robot to a smooth stop.
@@ -42,6 +32,8 @@ class Controller {
   void sent(const Twist2& velocity);
 
  protected:
+  /// Fraction of the platform's acceleration used for planned braking.
+  static constexpr double kBrakingShare = 0.7;
   /// Position of the robot along the path.
   struct Place {
     std::size_t nearest{};  ///< Index of the path's nearest pose.
@@ -58,7 +50,6 @@ class Controller {
   double steering() const { return steering_; }
 
   const Platform& platform() const { return platform_; }
-  const ControllerParams& params() const { return params_; }
   const Plan& plan() const { return plan_; }
 
  private:
@@ -70,7 +61,6 @@ class Controller {
   Twist2 against_slip(const Twist2& body);
 
   Platform platform_;
-  ControllerParams params_;
   Plan plan_{};
   Twist2 last_{};
   bool turning_{false};

@@ -97,7 +97,7 @@ class Ilqr {
 
   const std::array<V, Horizon>& controls() const { return controls_; }
   /// The state after `k` steps, [0, Horizon].
-  const X& state(int k) const { return states_[static_cast<std::size_t>(k)]; }
+  const X& state(int k) const { return states_[k]; }
   /// The cost of applying `controls` from `start`, for comparisons.
   double cost(const X& start, const std::array<Reference, Horizon>& references,
               const std::array<V, Horizon>& controls) {
@@ -128,19 +128,17 @@ class Ilqr {
     }
   }
 
-  /// Lower limits of the controls where the velocity states are `v`; most() gives the upper ones.
-  V least(const V& v) const {
-    V box = -limits_.rate;
-    for (int i = 0; i < kV; ++i)
-      if (limits_.hard[i] > 0)
-        box[i] = std::clamp((-limits_.velocity[i] - v[i]) / dt_, box[i], limits_.rate[i]);
-    return box;
-  }
-  V most(const V& v) const {
-    V box = limits_.rate;
-    for (int i = 0; i < kV; ++i)
-      if (limits_.hard[i] > 0)
-        box[i] = std::clamp((limits_.velocity[i] - v[i]) / dt_, -limits_.rate[i], box[i]);
+  /// Limits of the controls where the velocity states are `v`.
+  struct Box {
+    V low, high;
+  };
+  Box box(const V& v) const {
+    Box box{-limits_.rate, limits_.rate};
+    for (int i = 0; i < kV; ++i) {
+      if (limits_.hard[i] <= 0) continue;
+      box.low[i] = std::clamp((-limits_.velocity[i] - v[i]) / dt_, -limits_.rate[i], limits_.rate[i]);
+      box.high[i] = std::clamp((limits_.velocity[i] - v[i]) / dt_, -limits_.rate[i], limits_.rate[i]);
+    }
     return box;
   }
 
@@ -251,8 +249,8 @@ class Ilqr {
       quu.diagonal() += weight + V::Constant(damping);
       V change;
       Gain gain;
-      const V now = x.template tail<kV>();
-      if (!limited(quu, qu, qux, least(now) - u, most(now) - u, change, gain)) return false;
+      const Box free = box(x.template tail<kV>());
+      if (!limited(quu, qu, qux, free.low - u, free.high - u, change, gain)) return false;
       open_[k] = change;
       gains_[k] = gain;
       const X by_x = a.transpose() * value;
@@ -273,12 +271,11 @@ class Ilqr {
     for (int round = 0; round <= kV; ++round) {
       const V slope = qu + quu * change;
       for (int i = 0; i < kV; ++i)
-        held[static_cast<std::size_t>(i)] =
-            (change[i] <= low[i] && slope[i] > 0) || (change[i] >= high[i] && slope[i] < 0);
+        held[i] = (change[i] <= low[i] && slope[i] > 0) || (change[i] >= high[i] && slope[i] < 0);
       Input free = quu;
       V pull = -slope;
       for (int i = 0; i < kV; ++i) {
-        if (!held[static_cast<std::size_t>(i)]) continue;
+        if (!held[i]) continue;
         free.row(i).setZero();
         free.col(i).setZero();
         free(i, i) = 1.0;
@@ -293,7 +290,7 @@ class Ilqr {
       if (!done && round < kV) continue;
       Gain wanted = -qux;
       for (int i = 0; i < kV; ++i)
-        if (held[static_cast<std::size_t>(i)]) wanted.row(i).setZero();
+        if (held[i]) wanted.row(i).setZero();
       gain = solver.solve(wanted);
       break;
     }
@@ -308,9 +305,9 @@ class Ilqr {
       for (std::size_t k = 0; k < Horizon; ++k) {
         X off = trial_states_[k] - states_[k];
         off[2] = wrap_angle(off[2]);
-        trial_controls_[k] = (controls_[k] + share * open_[k] + gains_[k] * off)
-                                 .cwiseMax(least(trial_states_[k].template tail<kV>()))
-                                 .cwiseMin(most(trial_states_[k].template tail<kV>()));
+        const Box free = box(trial_states_[k].template tail<kV>());
+        trial_controls_[k] =
+            (controls_[k] + share * open_[k] + gains_[k] * off).cwiseMax(free.low).cwiseMin(free.high);
         trial_states_[k + 1] = next(trial_states_[k], trial_controls_[k]);
         sum += stage_cost(trial_states_[k + 1], trial_controls_[k], k);
         if (!(sum < cost)) break;

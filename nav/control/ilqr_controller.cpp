@@ -5,6 +5,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "nav/control/ilqr.hpp"
+
 namespace adit::nav {
 namespace {
 
@@ -12,6 +14,7 @@ constexpr double kLookAheadStep = 0.05;  ///< Step of the horizon, s.
 constexpr double kShortestPath = 0.05;   ///< The path counts as driven when less than this is left, m.
 /// Minimum speed of the references, m/s: a lower one would not reach the end of the path.
 constexpr double kCreepSpeed = 0.02;
+constexpr double kTurnShare = 0.8;  ///< Fraction of the platform's turn rate that a path's curvature may use.
 
 /// A point that moves along the path of a plan.
 class Walk {
@@ -89,12 +92,8 @@ class IlqrController final : public Controller {
   using Solver = Ilqr<Model>;
 
  public:
-  IlqrController(const Platform& platform, Model model, const typename Solver::Limits& limits,
-                 const IlqrControllerParams& params)
-      : Controller(platform, params.common),
-        params_(params),
-        model_(model),
-        solver_(model, limits, params.solver, kLookAheadStep) {}
+  IlqrController(const Platform& platform, Model model, const typename Solver::Limits& limits)
+      : Controller(platform), model_(model), solver_(model, limits, {}, kLookAheadStep) {}
 
  protected:
   Twist2 track(const Pose2& odom, const Place& place, double dt) override {
@@ -131,8 +130,8 @@ class IlqrController final : public Controller {
     // second.
     const double swing =
         platform().drive == Drive::car ? platform().steering_rate / platform().wheelbase : 0.0;
-    walk.speeds(cruise, params_.turn_share * platform().max_turn, swing,
-                params().braking_share * platform().max_acceleration, top_);
+    walk.speeds(cruise, kTurnShare * platform().max_turn, swing, kBrakingShare * platform().max_acceleration,
+                top_);
     double speed = std::min(cruise, std::hypot(command().vx, command().vy));
     for (Reference& r : references_) {
       speed = std::min(walk.at(top_), speed + platform().max_acceleration * kLookAheadStep);
@@ -144,7 +143,6 @@ class IlqrController final : public Controller {
     }
   }
 
-  IlqrControllerParams params_;
   Model model_;
   Solver solver_;
   std::array<Reference, Solver::kHorizon> references_{};
@@ -153,21 +151,21 @@ class IlqrController final : public Controller {
 
 }  // namespace
 
-std::unique_ptr<Controller> make_ilqr_controller(const Platform& p, const IlqrControllerParams& params) {
+std::unique_ptr<Controller> make_ilqr_controller(const Platform& p) {
   if (p.sideways()) {
     const Ilqr<model::Holonomic>::Limits limits{
         {p.max_speed, p.max_speed, p.max_turn},
         {p.max_acceleration, p.max_acceleration, p.max_turn_acceleration}};
-    return std::make_unique<IlqrController<model::Holonomic>>(p, model::Holonomic{}, limits, params);
+    return std::make_unique<IlqrController<model::Holonomic>>(p, model::Holonomic{}, limits);
   }
   if (p.drive == Drive::car) {
     const Ilqr<model::Car>::Limits limits{
         {p.max_speed, p.max_steering}, {p.max_acceleration, p.steering_rate}, {0.0, 1.0}};
-    return std::make_unique<IlqrController<model::Car>>(p, model::Car{p.wheelbase}, limits, params);
+    return std::make_unique<IlqrController<model::Car>>(p, model::Car{p.wheelbase}, limits);
   }
   const Ilqr<model::Unicycle>::Limits limits{{p.max_speed, p.max_turn},
                                              {p.max_acceleration, p.max_turn_acceleration}};
-  return std::make_unique<IlqrController<model::Unicycle>>(p, model::Unicycle{}, limits, params);
+  return std::make_unique<IlqrController<model::Unicycle>>(p, model::Unicycle{}, limits);
 }
 
 }  // namespace adit::nav

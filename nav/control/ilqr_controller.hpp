@@ -3,21 +3,12 @@
 #include <memory>
 
 #include "nav/control/controller.hpp"
-#include "nav/control/ilqr.hpp"
 
 namespace adit::nav {
-
-/// Parameters of the model predictive controller.
-struct IlqrControllerParams {
-  ControllerParams common{};
-  IlqrParams solver{};
-  double turn_share{0.8};  ///< Fraction of the platform's turn rate that a path's curvature may use, (0, 1].
-};
 
 /// Creates the default controller: model predictive control over 2.5 s of the path (50 steps of 50 ms) with
 /// the motion model of the platform's drive, solved by Ilqr. A solve takes about 0.1 ms on the caller's
 /// strand. Nothing is allocated after construction.
-std::unique_ptr<Controller> make_ilqr_controller(const Platform& platform,
-                                                 const IlqrControllerParams& params = {});
+std::unique_ptr<Controller> make_ilqr_controller(const Platform& platform);
 
 }  // namespace adit::nav

@@ -24,18 +24,6 @@ struct Unicycle {
   V inverse(const Twist2& t) const { return {t.vx, t.wz}; }
 };
 
-/// Velocity states (left, right): speeds of the two tracks or wheel rows, m/s.
-struct Differential {
-  double track{0.4};  ///< Distance between the two, m, (0, 5].
-  static constexpr int kVelocities = 2;
-  using V = Eigen::Vector2d;
-  Eigen::Vector3d twist(const V& v) const { return {0.5 * (v[0] + v[1]), 0.0, (v[1] - v[0]) / track}; }
-  Eigen::Matrix<double, 3, 2> jacobian(const V&) const {
-    return (Eigen::Matrix<double, 3, 2>() << 0.5, 0.5, 0, 0, -1 / track, 1 / track).finished();
-  }
-  V inverse(const Twist2& t) const { return {t.vx - 0.5 * track * t.wz, t.vx + 0.5 * track * t.wz}; }
-};
-
 /// Velocity states (v, steer): speed of the rear axle, m/s, and angle of the front wheels, rad. base_link
 /// lies above the rear axle.
 struct Car {

@@ -5,14 +5,6 @@
 #include <cmath>
 
 namespace adit::nav {
-namespace {
-
-constexpr double kOnPath = 0.3;     // m: offset of a leader that drives back along its own path.
-constexpr double kBackSeen = 10.0;  // m: length of path that is searched for it.
-/// Largest distance of consecutive points, m: their spacing, rounding, and a correction of the map.
-constexpr double kMaxStep = 3 * Trail::kSpacing;
-
-}  // namespace
 
 void Trail::record(const Eigen::Vector3d& place) {
   if (points_.empty()) {
@@ -25,13 +17,16 @@ void Trail::record(const Eigen::Vector3d& place) {
   const Eigen::Vector3d from = points_.back();
   for (double along = kSpacing; along <= distance; along += kSpacing)
     points_.push_back(from + step * (along / distance));
-  while (points_.size() > kCapacity) {
-    points_.pop_front();
-    ++first_;
-  }
+  trim();
+}
+
+void Trail::trim() {
+  for (; points_.size() > kCapacity; ++first_) points_.pop_front();
 }
 
 double Trail::leader_at(const Eigen::Vector3d& place) const {
+  constexpr double kOnPath = 0.3;     // m: offset of a leader that drives back along its own path.
+  constexpr double kBackSeen = 10.0;  // m: length of path that is searched for it.
   if (points_.empty()) return 0.0;
   const auto on = project(place, length() - kBackSeen, length());
   if (on->offset < kOnPath && on->along < length()) return on->along;
@@ -39,6 +34,8 @@ double Trail::leader_at(const Eigen::Vector3d& place) const {
 }
 
 bool Trail::add(std::uint32_t first, std::span<const Eigen::Vector3d> points) {
+  // Largest distance of consecutive points, m: their spacing, rounding, and a correction of the map.
+  constexpr double kMaxStep = 3 * kSpacing;
   if (points.empty()) return true;
   for (std::size_t i = 1; i < points.size(); ++i)
     if (!((points[i] - points[i - 1]).norm() <= kMaxStep)) return false;
@@ -59,10 +56,7 @@ bool Trail::add(std::uint32_t first, std::span<const Eigen::Vector3d> points) {
     points_.insert(points_.begin(), fresh.begin(), fresh.end());
     first_ = first;
   }
-  while (points_.size() > kCapacity) {
-    points_.pop_front();
-    ++first_;
-  }
+  trim();
   return true;
 }
 

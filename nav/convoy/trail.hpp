@@ -48,6 +48,8 @@ class Trail {
   std::optional<Projection> project(const Eigen::Vector3d& place, double from, double to) const;
 
  private:
+  void trim();
+
   std::deque<Eigen::Vector3d> points_{};
   std::uint32_t first_{};
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nav/explore/coverage_map.hpp"
 
-#include "nav/explore/voxel_line.hpp"
+#include <limits>
 
 namespace adit::nav {
 namespace {
@@ -11,6 +11,34 @@ constexpr int kTileShift = 2;  // A tile has 4 x 4 columns.
 std::size_t column_index(int x, int y) {
   return static_cast<std::size_t>((y & (CoverageMap::kSide - 1)) * CoverageMap::kSide +
                                   (x & (CoverageMap::kSide - 1)));
+}
+
+/// Visits the voxels along a line from its begin to its end, both included (Amanatides and Woo: *A fast voxel
+/// traversal algorithm for ray tracing*, 1987).
+/// `visit(voxel, last)`: returns false to end; `last`: the voxel holds the end of the line.
+template <class Visit>
+void walk_voxels(const Eigen::Vector3d& from, const Eigen::Vector3d& to, Visit&& visit) {
+  const CoverageVoxel first = CoverageMap::voxel_at(from), end = CoverageMap::voxel_at(to);
+  std::array<int, 3> at{first.x, first.y, first.z};
+  const std::array<int, 3> goal{end.x, end.y, end.z};
+  std::array<int, 3> step{};
+  std::array<double, 3> next{}, stride{};
+  int left = 0;
+  for (int n = 0; n < 3; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const double way = to[n] - from[n];
+    left += std::abs(goal[i] - at[i]);
+    step[i] = way > 0 ? 1 : -1;
+    stride[i] = way != 0.0 ? CoverageMap::kVoxel / std::abs(way) : std::numeric_limits<double>::infinity();
+    const double border = CoverageMap::kVoxel * (at[i] + (way > 0 ? 1 : 0));
+    next[i] = way != 0.0 ? (border - from[n]) / way : std::numeric_limits<double>::infinity();
+  }
+  for (;; --left) {
+    if (!visit(CoverageVoxel{at[0], at[1], at[2]}, left <= 0) || left <= 0) return;
+    const std::size_t n = next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+    at[n] += step[n];
+    next[n] += stride[n];
+  }
 }
 
 }  // namespace
@@ -28,32 +56,32 @@ int CoverageMap::find(int tx, int ty, int band) const {
 
 CoverageMap::Column CoverageMap::column(int x, int y, int band) const {
   const int index = find(x >> kTileShift, y >> kTileShift, band);
-  return index < 0 ? Column{} : tiles_[static_cast<std::size_t>(index)].columns[column_index(x, y)];
+  return index < 0 ? Column{} : tiles_[index].columns[column_index(x, y)];
 }
 
 CoverageMap::Column* CoverageMap::column_to_write(const CoverageVoxel& v) {
   const int tx = v.x >> kTileShift, ty = v.y >> kTileShift, band = band_of(v.z);
   if (last_ >= 0) {
-    Tile& tile = tiles_[static_cast<std::size_t>(last_)];
+    Tile& tile = tiles_[last_];
     if (tile.tx == tx && tile.ty == ty && tile.band == band) return &tile.columns[column_index(v.x, v.y)];
   }
   int index = find(tx, ty, band);
   if (index < 0) {
-    if (tiles_.size() >= most_) return nullptr;
+    if (tiles_.size() >= kMaxTiles) return nullptr;
     index = static_cast<int>(tiles_.size());
     tiles_.push_back({tx, ty, band, {}});
     index_.emplace(key(tx, ty, band), index);
   }
   last_ = index;
-  return &tiles_[static_cast<std::size_t>(index)].columns[column_index(v.x, v.y)];
+  return &tiles_[index].columns[column_index(v.x, v.y)];
 }
 
 void CoverageMap::add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d way = to - from;
   const double length = way.norm();
   if (!(length > 0.0)) return;
-  const bool ends = length <= range_;
-  const Eigen::Vector3d end = ends ? to : Eigen::Vector3d(from + way * (range_ / length));
+  const bool ends = length <= kRange;
+  const Eigen::Vector3d end = ends ? to : Eigen::Vector3d(from + way * (kRange / length));
   walk_voxels(from, end, [&](const CoverageVoxel& v, bool last) {
     const bool hits = last && ends;
     // Most voxels that a ray passes were passed by another ray of the same scan.

@@ -3,13 +3,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "core/geometry/pose.hpp"
+#include "core/geometry/round_down.hpp"
 
 namespace adit::nav {
 
@@ -20,12 +20,15 @@ struct CoverageVoxel {
 };
 
 /// What a robot's lidars have seen of the space around it: voxels of 0.5 m that a ray passed or ended in,
-/// within a range. Frame: that of the poses, z up, m. Has no clock. Bounded: `tiles`.
+/// within a range. Frame: that of the poses, z up, m. Has no clock. Bounded: `kMaxTiles`.
 class CoverageMap {
  public:
-  static constexpr double kVoxel = 0.5;  ///< Edge of a voxel, m.
-  static constexpr int kSide = 4;        ///< Columns along the side of a tile.
-  static constexpr int kSlices = 16;     ///< Voxels above one another in a tile.
+  static constexpr double kVoxel = 0.5;   ///< Edge of a voxel, m.
+  static constexpr int kSide = 4;         ///< Columns along the side of a tile.
+  static constexpr int kSlices = 16;      ///< Voxels above one another in a tile.
+  static constexpr double kRange = 12.0;  ///< What lies farther from the sensor does not count as seen, m.
+  /// Most tiles of 2 x 2 x 8 m (128 bytes each); a ray that would need more of them ends.
+  static constexpr std::size_t kMaxTiles = 65'536;
 
   /// A column of a tile; bit k: its k-th voxel from below.
   struct Column {
@@ -39,10 +42,6 @@ class CoverageMap {
     int tx{}, ty{}, band{};
     std::array<Column, kSide * kSide> columns{};
   };
-
-  /// `range`: what lies farther from the sensor does not count as seen, m, (0, 60]. `tiles`: most tiles of
-  /// 2 x 2 x 8 m (128 bytes each); a ray that would need more of them ends.
-  explicit CoverageMap(double range = 12.0, std::size_t tiles = 65'536) : range_(range), most_(tiles) {}
 
   /// Takes a scan. `points`: base_link, m, not finite where nothing was hit; `sensor`: the lidar in
   /// base_link, m; `body`: base_link in the map's frame.
@@ -60,14 +59,11 @@ class CoverageMap {
   bool visible(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
   /// Volume of what was seen, m3.
   double seen_volume() const;
-  double range() const { return range_; }
   std::size_t memory() const;
   void clear();
 
   static CoverageVoxel voxel_at(const Eigen::Vector3d& place) {
-    return {static_cast<int>(std::floor(place.x() / kVoxel)),
-            static_cast<int>(std::floor(place.y() / kVoxel)),
-            static_cast<int>(std::floor(place.z() / kVoxel))};
+    return {round_down(place.x() / kVoxel), round_down(place.y() / kVoxel), round_down(place.z() / kVoxel)};
   }
   static Eigen::Vector3d centre(const CoverageVoxel& v) {
     return kVoxel * Eigen::Vector3d(v.x + 0.5, v.y + 0.5, v.z + 0.5);
@@ -106,8 +102,6 @@ class CoverageMap {
   Column* column_to_write(const CoverageVoxel& v);
   void add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
-  double range_;
-  std::size_t most_;
   std::vector<Tile> tiles_{};
   std::unordered_map<std::uint64_t, int> index_{};  ///< Looked up only.
   int last_{-1};                                    ///< Tile that was written last.

@@ -9,9 +9,13 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kArrived = 0.5;      // m
-constexpr int kLooks = 1;             // Scans at a viewpoint before what it does not show is given up.
-constexpr double kSettled = 3.0;      // s without a frontier before the exploration is done.
+// m3: frontiers with less behind them are left to the end. By test_explore.
+constexpr double kLeastGain = 8.0;
+constexpr double kKeepCost = 0.9;  // Another frontier must cost less than this fraction of the present one.
+constexpr double kKeepGain = 2.0;  // Another frontier must cost this much less than the present one, m.
+constexpr double kArrived = 0.5;   // m
+constexpr int kLooks = 1;          // Scans at a viewpoint before what it does not show is given up.
+constexpr double kSettled = 3.0;   // s without a frontier before the exploration is done.
 constexpr double kFirstPause = 60.0;  // s before a place that was blocked is tried again; doubles each time.
 constexpr double kSameViewpoint = 1.0;  // m
 constexpr double kSameFrontier = 3.0;   // m between the centres: the width of a group.
@@ -29,17 +33,19 @@ constexpr double kSmallGain = 3.75;
 // seen. Chosen with bench_explore, not derived: without it the blocks take up to half as long again.
 constexpr double kWorth = 0.01;
 
+/// Whether it is left to the end.
+bool is_small(const Frontier& frontier) { return frontier.gain < kLeastGain; }
+
 std::size_t unseen_of(const CoverageMap& map, const Frontier& frontier) {
-  return static_cast<std::size_t>(
-      std::count_if(frontier.unseen.begin(), frontier.unseen.end(), [&map](const CoverageVoxel& v) {
-        const CoverageMap::Column column = map.column(v.x, v.y, CoverageMap::band_of(v.z));
-        return !CoverageMap::bit(static_cast<std::uint16_t>(column.seen() | column.tried), v.z);
-      }));
+  return static_cast<std::size_t>(std::ranges::count_if(frontier.unseen, [&map](const CoverageVoxel& v) {
+    const CoverageMap::Column column = map.column(v.x, v.y, CoverageMap::band_of(v.z));
+    return !CoverageMap::bit(static_cast<std::uint16_t>(column.seen() | column.tried), v.z);
+  }));
 }
 
 /// Leaves out what the robot's areas say is not worth a look, and weighs the rest.
 /// Areas are those of the ground, so `z` is that of the robot, m.
-void weigh(const GroundView& ground, double z, double least_gain, std::vector<Frontier>& frontiers) {
+void weigh(const RouteGround& ground, double z, std::vector<Frontier>& frontiers) {
   for (Frontier& frontier : frontiers) {
     const auto all = static_cast<double>(frontier.unseen.size());
     double sum = 0;
@@ -52,16 +58,13 @@ void weigh(const GroundView& ground, double z, double least_gain, std::vector<Fr
     frontier.weight = sum / all;
     frontier.gain *= frontier.weight;
   }
-  std::erase_if(frontiers, [&](const Frontier& f) { return f.unseen.empty() || f.gain < least_gain; });
+  std::erase_if(frontiers, [&](const Frontier& f) { return f.unseen.empty() || f.gain < kSmallGain; });
 }
 
 }  // namespace
 
-Explorer::Explorer(const Platform& platform, const ExploreParams& params)
-    : params_(params),
-      sensor_(platform.lidar_origin()),
-      braking_(platform.max_acceleration),
-      map_(params.range) {
+Explorer::Explorer(const Platform& platform)
+    : sensor_(platform.lidar_origin()), braking_(platform.max_acceleration) {
   const LidarConfig lidar = platform.lidar();
   steepest_ = std::tan(lidar.highest * M_PI / 180.0);
   lowest_ = std::tan(lidar.lowest * M_PI / 180.0);
@@ -92,7 +95,7 @@ bool Explorer::in_view(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& 
   const Eigen::Vector3d from = viewpoint + Eigen::Vector3d(0, 0, sensor_.z());
   const Eigen::Vector3d way = target - from;
   const double across = way.head<2>().norm(), half = CoverageMap::kVoxel / 2;
-  return way.norm() < params_.range && way.z() - half < steepest_ * across + half &&
+  return way.norm() < CoverageMap::kRange && way.z() - half < steepest_ * across + half &&
          way.z() + half > lowest_ * across - half && map_.visible(from, target);
 }
 
@@ -101,17 +104,15 @@ bool Explorer::satisfied(const Goal& goal) const {
 }
 
 void Explorer::defer(const Eigen::Vector3d& place, double stamp_s) {
-  const auto same = std::find_if(deferred_.begin(), deferred_.end(), [&place](const Deferred& d) {
-    return (d.place - place).norm() < kSameViewpoint;
-  });
+  const auto same = std::ranges::find_if(
+      deferred_, [&place](const Deferred& d) { return (d.place - place).norm() < kSameViewpoint; });
   if (same != deferred_.end()) {
     same->pause *= 2;
     same->until = stamp_s + same->pause;
     return;
   }
   if (deferred_.size() >= kMaxDeferred)
-    deferred_.erase(std::min_element(deferred_.begin(), deferred_.end(),
-                                     [](const Deferred& a, const Deferred& b) { return a.until < b.until; }));
+    deferred_.erase(std::ranges::min_element(deferred_, {}, &Deferred::until));
   deferred_.push_back({place, stamp_s + kFirstPause, kFirstPause});
 }
 
@@ -127,7 +128,7 @@ void Explorer::give_up_unseen(const Goal& goal) {
 }
 
 // Places around a frontier and on the straight line to the robot, those near the frontier first.
-std::vector<Eigen::Vector3d> Explorer::places_around(GroundView& ground, const Frontier& frontier,
+std::vector<Eigen::Vector3d> Explorer::places_around(RouteGround& ground, const Frontier& frontier,
                                                      const Eigen::Vector3d& place, double stamp_s) const {
   std::vector<Eigen::Vector3d> places;
   const Eigen::Vector2d centre = frontier.centre.head<2>(), to_robot = place.head<2>() - centre;
@@ -141,11 +142,10 @@ std::vector<Eigen::Vector3d> Explorer::places_around(GroundView& ground, const F
       const double bearing = 2 * M_PI * k / kDirections;
       offer(centre + away * Eigen::Vector2d(std::cos(bearing), std::sin(bearing)));
     }
-  for (double away = kAlong; away < std::min(to_robot.norm(), params_.range); away += kAlong)
+  for (double away = kAlong; away < std::min(to_robot.norm(), CoverageMap::kRange); away += kAlong)
     offer(centre + away * to_robot.normalized());
-  const auto off = [&centre](const Eigen::Vector3d& p) { return (p.head<2>() - centre).squaredNorm(); };
-  std::sort(places.begin(), places.end(),
-            [&off](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return off(a) < off(b); });
+  std::ranges::sort(places, {},
+                    [&](const Eigen::Vector3d& p) { return (p.head<2>() - centre).squaredNorm(); });
   return places;
 }
 
@@ -160,7 +160,7 @@ bool Explorer::shows(const Eigen::Vector3d& viewpoint, const Frontier& frontier)
   return 2 * shown >= looked;
 }
 
-std::vector<Explorer::Viewpoint> Explorer::viewpoints(GroundView& ground, const Frontiers& frontiers,
+std::vector<Explorer::Viewpoint> Explorer::viewpoints(RouteGround& ground, const Frontiers& frontiers,
                                                       const Eigen::Vector3d& place, double stamp_s) const {
   std::vector<Viewpoint> all;
   for (std::size_t i = 0; i < frontiers.list.size(); ++i) {
@@ -176,15 +176,12 @@ std::vector<Explorer::Viewpoint> Explorer::viewpoints(GroundView& ground, const 
     const auto beside = std::find_if(places.begin(), places.end(), keep);
     if (beside == places.end()) {
       // The ground from where it could be seen may become known from nearer.
-      const auto near = std::find_if(places.begin(), places.end(),
-                                     [&](const Eigen::Vector3d& p) { return ground.standable(p); });
+      const auto near = std::ranges::find_if(places, [&](const auto& p) { return ground.standable(p); });
       if (near != places.end()) all.push_back({*near, i, true, false});
       continue;
     }
     places.erase(places.begin(), beside + 1);
-    std::sort(places.begin(), places.end(), [&place](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-      return (a - place).squaredNorm() < (b - place).squaredNorm();
-    });
+    std::ranges::sort(places, {}, [&](const Eigen::Vector3d& p) { return (p - place).squaredNorm(); });
     for (const Eigen::Vector3d& p : places) {
       if (added > kViewpoints) break;
       keep(p);
@@ -193,7 +190,7 @@ std::vector<Explorer::Viewpoint> Explorer::viewpoints(GroundView& ground, const 
   return all;
 }
 
-Eigen::Vector3d Explorer::stopping_place(GroundView& ground, const Eigen::Vector3d& place, double stamp_s) {
+Eigen::Vector3d Explorer::stopping_place(RouteGround& ground, const Eigen::Vector3d& place, double stamp_s) {
   constexpr double kShortest = 0.05, kLongest = 1.0;  // s: outside of this interval the speed is unknown.
   const double dt = stamp_s - before_s_;
   Eigen::Vector3d ahead = place;
@@ -226,7 +223,7 @@ bool Explorer::continues(const Frontier& frontier) const {
 
 // Chooses the frontier of the cheapest viewpoint. The goal is the place beside the frontier, beyond most
 // viewpoints: the robot has its next goal before it has to brake for this one.
-std::vector<bool> Explorer::choose(GroundView& ground, const Frontiers& frontiers,
+std::vector<bool> Explorer::choose(RouteGround& ground, const Frontiers& frontiers,
                                    const Eigen::Vector3d& place, double stamp_s) {
   const std::vector<Viewpoint> places = viewpoints(ground, frontiers, place, stamp_s);
   std::vector<Eigen::Vector3d> goals;
@@ -262,7 +259,7 @@ std::vector<bool> Explorer::choose(GroundView& ground, const Frontiers& frontier
     if (!std::isfinite(costs[i]) || (large && is_small(frontier))) continue;
     const double rest = places[i].shows ? 0 : (frontier.centre - places[i].place).norm();
     double cost = costs[i] + rest;
-    if (open && continues(frontier)) cost = params_.keep_cost * cost - params_.keep_gain;
+    if (open && continues(frontier)) cost = kKeepCost * cost - kKeepGain;
     if (cost >= best_cost) continue;
     best_cost = cost;
     best = i;
@@ -286,15 +283,13 @@ void Explorer::leave_small(std::vector<Frontier>& frontiers) const {
   double gain = 0;
   for (const Frontier& frontier : frontiers)
     if (is_small(frontier)) gain += frontier.gain;
-  if (gain < kWorth * map_.seen_volume())
-    std::erase_if(frontiers, [this](const Frontier& f) { return is_small(f); });
+  if (gain < kWorth * map_.seen_volume()) std::erase_if(frontiers, is_small);
 }
 
-ExploreStep Explorer::step(GroundView& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked) {
+ExploreStep Explorer::step(RouteGround& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked) {
   if (goal_) end_goal(place, stamp_s, blocked);
-  const double least_gain = std::min(kSmallGain, params_.least_gain);
-  Frontiers frontiers = find_frontiers(map_, {.least_gain = least_gain});
-  if (ground.weighs()) weigh(ground, place.z(), least_gain, frontiers.list);
+  Frontiers frontiers = find_frontiers(map_, kSmallGain);
+  if (ground.weighs()) weigh(ground, place.z(), frontiers.list);
   leave_small(frontiers.list);
   const std::vector<bool> reachable = choose(ground, frontiers, place, stamp_s);
 

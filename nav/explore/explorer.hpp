@@ -8,34 +8,9 @@
 #include "core/geometry/scan_points.hpp"
 #include "nav/explore/coverage_map.hpp"
 #include "nav/explore/frontiers.hpp"
+#include "nav/explore/route_ground.hpp"
 
 namespace adit::nav {
-
-/// Parameters of Explorer.
-struct ExploreParams {
-  double range{12.0};  ///< Space farther from the lidar does not count as seen, m, (0, 60].
-  /// Frontiers with less unseen volume behind them are left to the end, m3, [0, 100]. Chosen with
-  /// test_explore.
-  double least_gain{8.0};
-  double keep_cost{0.9};  ///< Another frontier must cost less than this fraction of the present one, (0, 1].
-  double keep_gain{2.0};  ///< Another frontier must cost this much less than the present one, m, [0, 20].
-};
-
-/// The ground as a global planner knows it.
-class GroundView {
- public:
-  virtual ~GroundView() = default;
-  /// Height of the ground at a place, of the floor nearest to z; nothing when it is not known.
-  virtual std::optional<double> ground(double x, double y, double z) = 0;
-  /// Whether the ground around a place is known to be free, as far as the body and a margin reach.
-  virtual bool standable(const Eigen::Vector3d& place) = 0;
-  /// Costs of the routes from one place to many through known space, m; infinite where none leads.
-  virtual std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) = 0;
-  /// Whether weight() is not 1 everywhere.
-  virtual bool weighs() const { return false; }
-  /// Factor of what is seen at a place; 0: it is not worth a look.
-  virtual double weight(const Eigen::Vector3d& /*place*/) const { return 1.0; }
-};
 
 /// Progress of an exploration.
 enum class ExploreState : std::uint8_t {
@@ -48,13 +23,12 @@ enum class ExploreState : std::uint8_t {
 /// Present goal and progress of an exploration.
 struct ExploreStep {
   ExploreState state{ExploreState::starting};
-  std::optional<Eigen::Vector3d>
-      goal{};                  ///< Place to drive to, on the ground, m. It may change before arrival.
-  std::size_t frontiers{0};    ///< Those that a route leads to.
-  std::size_t unreachable{0};  ///< Those that no known route leads to.
-  double volume{0};            ///< Volume that was seen, m3.
-  double open{0};              ///< Volume that is expected behind the frontiers that a route leads to, m3.
-  double dropped{0};           ///< Volume behind frontiers that were left out, m3.
+  std::optional<Eigen::Vector3d> goal{};  ///< Where to drive, on the ground, m. It may change before arrival.
+  std::size_t frontiers{0};               ///< Those that a route leads to.
+  std::size_t unreachable{0};             ///< Those that no known route leads to.
+  double volume{0};                       ///< Volume that was seen, m3.
+  double open{0};     ///< Volume that is expected behind the frontiers that a route leads to, m3.
+  double dropped{0};  ///< Volume behind frontiers that were left out, m3.
 };
 
 /// Explores by driving to the frontier whose nearest viewpoint costs least: the route to it from where the
@@ -63,7 +37,7 @@ struct ExploreStep {
 /// no clock: the same scans and steps give the same goals. Frame: that of the poses, z up, m.
 class Explorer {
  public:
-  explicit Explorer(const Platform& platform, const ExploreParams& params = {});
+  explicit Explorer(const Platform& platform);
 
   /// Takes a scan. `body`: base_link, on the ground.
   void add_scan(const ScanPoints& scan, const Pose3& body);
@@ -71,9 +45,8 @@ class Explorer {
   void begin();
   /// To be called after scans, about once a second and when a goal is blocked. `place`: the robot on the
   /// ground; `stamp_s`: s, not decreasing; `blocked`: no way to the goal of the last step was found.
-  ExploreStep step(GroundView& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked);
+  ExploreStep step(RouteGround& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked);
   const CoverageMap& coverage() const { return map_; }
-  std::size_t memory() const { return map_.memory(); }
   /// Forgets everything, as after a jump of the poses.
   void clear();
 
@@ -102,30 +75,27 @@ class Explorer {
   bool is_deferred(const Eigen::Vector3d& place, double stamp_s) const;
   void give_up_unseen(const Goal& goal);
   bool shows(const Eigen::Vector3d& viewpoint, const Frontier& frontier) const;
-  std::vector<Eigen::Vector3d> places_around(GroundView& ground, const Frontier& frontier,
+  std::vector<Eigen::Vector3d> places_around(RouteGround& ground, const Frontier& frontier,
                                              const Eigen::Vector3d& place, double stamp_s) const;
-  std::vector<Viewpoint> viewpoints(GroundView& ground, const Frontiers& frontiers,
+  std::vector<Viewpoint> viewpoints(RouteGround& ground, const Frontiers& frontiers,
                                     const Eigen::Vector3d& place, double stamp_s) const;
   /// The place where the robot can be at rest at the earliest, if it is free; else the robot's own.
-  Eigen::Vector3d stopping_place(GroundView& ground, const Eigen::Vector3d& place, double stamp_s);
+  Eigen::Vector3d stopping_place(RouteGround& ground, const Eigen::Vector3d& place, double stamp_s);
   /// Ends the goal if the robot arrived and looked, or is blocked.
   void end_goal(const Eigen::Vector3d& place, double stamp_s, bool blocked);
   /// Whether a frontier is about where that of the goal is.
   bool continues(const Frontier& frontier) const;
-  /// Whether it is left to the end.
-  bool is_small(const Frontier& frontier) const { return frontier.gain < params_.least_gain; }
   /// Drops the small frontiers if all of them together are not worth a way.
   void leave_small(std::vector<Frontier>& frontiers) const;
   /// Chooses the goal. Returns which frontiers can be reached.
-  std::vector<bool> choose(GroundView& ground, const Frontiers& frontiers, const Eigen::Vector3d& place,
+  std::vector<bool> choose(RouteGround& ground, const Frontiers& frontiers, const Eigen::Vector3d& place,
                            double stamp_s);
 
-  ExploreParams params_;
   Eigen::Vector3d sensor_;  ///< The lidar in base_link, m.
   double steepest_;         ///< Tangent of the highest elevation that the lidar sees.
   double lowest_;           ///< Tangent of the lowest one.
   double braking_;          ///< m/s2
-  CoverageMap map_;
+  CoverageMap map_{};
   std::optional<Goal> goal_{};
   std::vector<Deferred> deferred_{};
   int scans_{0};      ///< Since the robot arrived at the goal, or since nothing was left.

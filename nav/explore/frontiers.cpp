@@ -36,7 +36,7 @@ std::vector<Edge> find_edges(const CoverageMap& map) {
   std::vector<Edge> edges;
   for (const CoverageMap::Tile& tile : map.tiles())
     for (int c = 0; c < CoverageMap::kSide * CoverageMap::kSide; ++c) {
-      const CoverageMap::Column& column = tile.columns[static_cast<std::size_t>(c)];
+      const CoverageMap::Column& column = tile.columns[c];
       const auto open = static_cast<std::uint16_t>(column.free & ~column.hit);
       if (open == 0) continue;
       Edge edge{tile.tx * CoverageMap::kSide + c % CoverageMap::kSide,
@@ -106,7 +106,9 @@ Frontier make_frontier(const std::vector<Edge>& edges, const std::vector<std::si
 
 }  // namespace
 
-Frontiers find_frontiers(const CoverageMap& map, const FrontierLimits& limits) {
+Frontiers find_frontiers(const CoverageMap& map, double least_gain) {
+  constexpr int kLeastVoxels = 3;  // A frontier of fewer free voxels is left out: holes between beams.
+  constexpr int kAcross = 6;       // A group spreads over so many columns at most.
   const std::vector<Edge> edges = find_edges(map);
   std::unordered_map<ColumnKey, std::size_t, Hash> at;  // Looked up only.
   for (std::size_t i = 0; i < edges.size(); ++i)
@@ -125,8 +127,8 @@ Frontiers find_frontiers(const CoverageMap& map, const FrontierLimits& limits) {
           const auto beside = at.find({edge.x + dx, edge.y + dy, edge.band});
           if (beside == at.end() || grouped[beside->second]) continue;
           const Edge& other = edges[beside->second];
-          if (std::max(x1, other.x) - std::min(x0, other.x) >= limits.across ||
-              std::max(y1, other.y) - std::min(y0, other.y) >= limits.across)
+          if (std::max(x1, other.x) - std::min(x0, other.x) >= kAcross ||
+              std::max(y1, other.y) - std::min(y0, other.y) >= kAcross)
             continue;
           x0 = std::min(x0, other.x);
           x1 = std::max(x1, other.x);
@@ -139,7 +141,7 @@ Frontiers find_frontiers(const CoverageMap& map, const FrontierLimits& limits) {
     int voxels = 0;
     Frontier frontier = make_frontier(edges, group, voxels);
     frontier.gain = gain_behind(map, frontier.unseen);
-    if (voxels < limits.least_voxels || frontier.gain < limits.least_gain)
+    if (voxels < kLeastVoxels || frontier.gain < least_gain)
       found.dropped += frontier.gain;
     else
       found.list.push_back(std::move(frontier));

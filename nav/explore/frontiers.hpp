@@ -15,13 +15,6 @@ struct Frontier {
   double weight{1};                     ///< Factor of its gain by the robot's areas.
 };
 
-/// What `find_frontiers` leaves out, and in which part of the space it looks.
-struct FrontierLimits {
-  double least_gain{1.0};  ///< A frontier with less behind it is left out, m3.
-  int least_voxels{3};     ///< The same for one of fewer free voxels: holes between beams.
-  int across{6};           ///< A group spreads over so many columns at most.
-};
-
 /// The frontiers of a map and the volume of those that were left out.
 struct Frontiers {
   std::vector<Frontier> list{};
@@ -30,7 +23,8 @@ struct Frontiers {
 
 /// Groups free voxels with an unseen voxel beside them (Yamauchi: *A frontier-based approach for autonomous
 /// exploration*, 1997), column by column, in the order of the map's tiles: the same map gives the same list.
-/// Voxels that were tried do not count as unseen.
-Frontiers find_frontiers(const CoverageMap& map, const FrontierLimits& limits);
+/// Voxels that were tried do not count as unseen. `least_gain`: a frontier with less behind it is left out,
+/// m3.
+Frontiers find_frontiers(const CoverageMap& map, double least_gain);
 
 }  // namespace adit::nav

@@ -2,20 +2,21 @@
 #pragma once
 #include <cmath>
 
-#include "nav/explore/explorer.hpp"
 #include "nav/routing/route_planner.hpp"
 
 namespace adit::nav {
 
 /// The ground as the robot's own global planner knows it, which must outlive this.
-class RouteGround final : public GroundView {
+class RouteGround {
  public:
   /// `areas`: those of the robot; `within`: what it is to explore. Both in the planner's frame.
   RouteGround(RoutePlanner& planner, const Platform& platform, const AreaSet& areas = {},
               const AreaSet& within = {})
       : planner_(planner), areas_(areas), within_(within), half_width_(platform.width / 2) {}
-  std::optional<double> ground(double x, double y, double z) override { return planner_.ground(x, y, z); }
-  bool standable(const Eigen::Vector3d& place) override {
+  /// Height of the ground at a place, of the floor nearest to z; nothing when it is not known.
+  std::optional<double> ground(double x, double y, double z) const { return planner_.ground(x, y, z); }
+  /// Whether the ground around a place is known to be free, as far as the body and a margin reach.
+  bool standable(const Eigen::Vector3d& place) const {
     if (!areas_.permits(place, half_width_)) return false;
     const double reach = half_width_ + kFree;
     for (int k = 0; k < kSides; ++k) {
@@ -27,11 +28,14 @@ class RouteGround final : public GroundView {
     }
     return true;
   }
-  std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) override {
+  /// Costs of the routes from one place to many through known space, m; infinite where none leads.
+  std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) {
     return planner_.costs(from, goals);
   }
-  bool weighs() const override { return !areas_.empty() || !within_.empty(); }
-  double weight(const Eigen::Vector3d& place) const override {
+  /// Whether weight() is not 1 everywhere.
+  bool weighs() const { return !areas_.empty() || !within_.empty(); }
+  /// Factor of what is seen at a place; 0: it is not worth a look.
+  double weight(const Eigen::Vector3d& place) const {
     return within_.permits(place) ? areas_.weight(place) : 0.0;
   }
 

@@ -43,14 +43,10 @@ Footprint Footprint::turned() const {
 
 bool Footprint::symmetric() const {
   constexpr double kSame = 1e-3;  // m
-  for (std::size_t i = 0; i < corner_count_; ++i) {
-    const Eigen::Vector2d opposite = -corners_[i];
-    const auto end = corners_.begin() + static_cast<std::ptrdiff_t>(corner_count_);
-    if (std::none_of(corners_.begin(), end,
-                     [&](const Eigen::Vector2d& c) { return (c - opposite).norm() < kSame; }))
-      return false;
-  }
-  return true;
+  const auto corners = std::span(corners_).first(corner_count_);
+  return std::ranges::all_of(corners, [&](const Eigen::Vector2d& one) {
+    return std::ranges::any_of(corners, [&](const Eigen::Vector2d& c) { return (c + one).norm() < kSame; });
+  });
 }
 
 double Footprint::reach(double nx, double ny) const {

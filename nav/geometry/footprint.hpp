@@ -46,6 +46,7 @@ class Footprint {
     }
     return least;
   }
+  float depth(const Eigen::Vector2f& p) const { return depth(p.x(), p.y()); }
   /// Radius of the circumscribed circle around base_link, m.
   double radius() const { return radius_; }
   /// Distance from base_link to the foremost point, m.

@@ -3,14 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace adit::nav {
-namespace {
-
-constexpr double kMapError = kRouteCell / 2;  // m
-
-}  // namespace
 
 struct GoalCheck::Ground {
   bool solid{}, hole{}, unknown{}, steep{};
@@ -18,8 +14,9 @@ struct GoalCheck::Ground {
   double nearest{1e9};  ///< Distance from the place to the nearest obstacle under the footprint, m.
 };
 
+// Half a cell is the position error of an obstacle in the map.
 GoalCheck::GoalCheck(const Platform& platform)
-    : body_(Footprint(platform).grown(-kMapError, -kMapError)),
+    : body_(Footprint(platform).grown(-kRouteCell / 2, -kRouteCell / 2)),
       limits_(Traversability::of(platform)),
       reach_(least_reach(platform)),
       flies_(platform.flies()) {}
@@ -32,10 +29,10 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
   // Fits a plane to the ground under the body.
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
-  const GroundCell* before = nullptr;
   for (int iy = cy - reach; iy <= cy + reach; ++iy) {
-    before = nullptr;
+    const GroundCell* ground = nullptr;  // The cell before, if its ground is known and free.
     for (int ix = cx - reach; ix <= cx + reach; ++ix) {
+      const GroundCell* const before = std::exchange(ground, nullptr);
       const GroundCell* cell = map.cell(ix, iy, place.z());
       const Eigen::Vector2d at = cell && cell->blocked
                                      ? obstacle_place(ix, iy, *cell)
@@ -43,13 +40,9 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
       const Eigen::Vector2d off = at - place.head<2>();
       const bool inside = body_.depth(static_cast<float>(c * off.x() + s * off.y()),
                                       static_cast<float>(c * off.y() - s * off.x())) >= 0.0f;
-      if (!inside) {
-        before = nullptr;
-        continue;
-      }
+      if (!inside) continue;
       if (!cell || (!cell->known && !cell->blocked)) {
         found.unknown = true;
-        before = nullptr;
         continue;
       }
       if (cell->blocked) {
@@ -58,12 +51,11 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
           found.nearest = off.norm();
           found.hole = cell->obstacle_height <= kHoleHeight;
         }
-        before = nullptr;
         continue;
       }
       const double rise = before ? std::abs(cell->z - before->z) : 0.0;
       found.steep = found.steep || rise > limits_.obstacle + limits_.slope * kRouteCell;
-      before = cell;
+      ground = cell;
       found.sure = found.sure && cell->sure;
       const Eigen::Vector3d row(off.x(), off.y(), 1.0);
       squares += row * row.transpose();
@@ -111,23 +103,16 @@ Standing GoalCheck::stand(const RoutePlanner& planner, const Eigen::Vector3d& pl
 }
 
 bool GoalCheck::is_between(const SurfaceMap& map, const Eigen::Vector3d& place) const {
-  const int reach = static_cast<int>(body_.radius() / kRouteCell) + 1;
-  const int cx = route_cell(place.x()), cy = route_cell(place.y());
-  const GroundCell* own = map.cell(cx, cy, place.z());
+  const GroundCell* own = map.cell(route_cell(place.x()), route_cell(place.y()), place.z());
   if (!own || !own->known || own->blocked) return false;
   std::vector<Eigen::Vector2d> obstacles;
-  for (int iy = cy - reach; iy <= cy + reach; ++iy)
-    for (int ix = cx - reach; ix <= cx + reach; ++ix) {
-      const GroundCell* cell = map.cell(ix, iy, place.z());
-      if (!cell || !cell->blocked) continue;
-      const Eigen::Vector2d off = obstacle_place(ix, iy, *cell) - place.head<2>();
-      if (off.norm() <= body_.radius()) obstacles.push_back(off);
-    }
-  const auto nearest = std::min_element(
-      obstacles.begin(), obstacles.end(),
-      [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.squaredNorm() < b.squaredNorm(); });
-  return std::any_of(obstacles.begin(), obstacles.end(),
-                     [&](const Eigen::Vector2d& off) { return off.dot(*nearest) < 0.0; });
+  map.visit_obstacles(place, body_.radius(), [&](const Eigen::Vector2d& obstacle) {
+    const Eigen::Vector2d off = obstacle - place.head<2>();
+    if (off.norm() <= body_.radius()) obstacles.push_back(off);
+  });
+  const auto nearest =
+      std::ranges::min_element(obstacles, {}, [](const Eigen::Vector2d& off) { return off.squaredNorm(); });
+  return std::ranges::any_of(obstacles, [&](const Eigen::Vector2d& off) { return off.dot(*nearest) < 0.0; });
 }
 
 std::optional<Eigen::Vector3d> GoalCheck::nearest(const RoutePlanner& planner, const Eigen::Vector3d& place,
@@ -142,8 +127,7 @@ std::optional<Eigen::Vector3d> GoalCheck::nearest(const RoutePlanner& planner, c
     for (int dx = -kReach; dx <= kReach; ++dx)
       if (const double range = std::hypot(dx, dy) * kRouteCell; range <= kNearest)
         candidates.push_back({range, dx, dy});
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.range < b.range; });
+  std::ranges::stable_sort(candidates, {}, &Candidate::range);
   for (const Candidate& candidate : candidates) {
     const Eigen::Vector3d at = place + kRouteCell * Eigen::Vector3d(candidate.dx, candidate.dy, 0.0);
     if (stand(planner, at, floor) == Standing::standable) return at;
@@ -165,7 +149,7 @@ GoalFinding GoalCheck::check(RoutePlanner& planner, const Eigen::Vector3d& from,
   const Route route = planner.plan(from, found.place);
   found.length = route.length;
   found.unknown_length = route.unknown_length;
-  if (route.status == RouteStatus::unreachable && !planner.has_blocked_places())
+  if (route.status == RouteStatus::unreachable && !planner.map().has_blocked_places())
     found.standing = Standing::not_connected;
   return found;
 }

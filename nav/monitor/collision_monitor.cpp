@@ -7,6 +7,13 @@
 namespace adit::nav {
 namespace {
 
+constexpr double kMargin = 0.02;       ///< Safety margin around the footprint, m.
+constexpr double kMoverMargin = 0.10;  ///< Safety margin towards movers, m.
+constexpr double kReaction = 0.15;     ///< Latency before braking begins, s.
+// Fraction of the platform's acceleration that is assumed for braking.
+constexpr double kBrakingShare = 0.75;
+/// Speed limit of any part of the body when a robot is limited and not stopped, m/s.
+constexpr double kLimitSpeed = 0.3;
 constexpr double kStride = 0.03;  ///< Distance between the poses of a sweep, m.
 constexpr int kMaxStrides = 160;  ///< Maximum number of poses of a sweep.
 /// A smaller change does not count as deeper, m: sliding along a wall is allowed.
@@ -25,23 +32,20 @@ Twist2 scaled(const Twist2& t, double by) { return {by * t.vx, by * t.vy, by * t
 
 double speed_of(const Twist2& t) { return std::hypot(t.vx, t.vy); }
 
-double reach_of(const Platform& p, const CollisionMonitorParams& m) {
-  return std::hypot(p.length, p.width) / 2 + m.margin + p.max_speed * m.reaction +
-         p.max_speed * p.max_speed / (2 * m.braking_share * p.max_acceleration) + 0.1;
+double reach_of(const Platform& p) {
+  return std::hypot(p.length, p.width) / 2 + kMargin + p.max_speed * kReaction +
+         p.max_speed * p.max_speed / (2 * kBrakingShare * p.max_acceleration) + 0.1;
 }
 
 }  // namespace
 
-CollisionMonitor::CollisionMonitor(const Platform& platform, const CollisionMonitorParams& params)
+CollisionMonitor::CollisionMonitor(const Platform& platform)
     : platform_(platform),
-      params_(params),
-      body_(Footprint(platform).grown(params.margin, params.margin)),
-      wide_(Footprint(platform).grown(params.mover_margin, params.mover_margin)),
+      body_(Footprint(platform).grown(kMargin, kMargin)),
+      wide_(Footprint(platform).grown(kMoverMargin, kMoverMargin)),
       seen_(std::make_shared<const DetectedObstacles>()) {}
 
-ObstacleDetector CollisionMonitor::make_detector() const {
-  return {platform_, reach_of(platform_, params_), params_.points, params_.tracker};
-}
+ObstacleDetector CollisionMonitor::make_detector() const { return {platform_, reach_of(platform_)}; }
 
 void CollisionMonitor::see(std::shared_ptr<const DetectedObstacles> seen) {
   if (seen) seen_ = std::move(seen);
@@ -57,7 +61,7 @@ void CollisionMonitor::clear() { seen_ = std::make_shared<const DetectedObstacle
 
 Twist2 CollisionMonitor::limited(const Twist2& wanted) const {
   const double fastest = rim_speed(wanted);
-  return fastest > params_.limit_speed ? scaled(wanted, params_.limit_speed / fastest) : wanted;
+  return fastest > kLimitSpeed ? scaled(wanted, kLimitSpeed / fastest) : wanted;
 }
 
 // Speed of the body's fastest part, m/s.
@@ -80,17 +84,15 @@ Twist2 CollisionMonitor::instead_of(const Twist2& stopped, const Pose2& odom, do
 
 double CollisionMonitor::speed_scale(const Twist2& wanted, const Pose2& odom, double now_s) const {
   // Braking time from the full `wanted`; from a fraction of it, that fraction of the time.
-  const double brake =
-      std::max(speed_of(wanted) / (params_.braking_share * platform_.max_acceleration),
-               std::fabs(wanted.wz) / (params_.braking_share * platform_.max_turn_acceleration));
-  const double horizon = params_.reaction + brake / 2;
+  const double brake = std::max(speed_of(wanted) / (kBrakingShare * platform_.max_acceleration),
+                                std::fabs(wanted.wz) / (kBrakingShare * platform_.max_turn_acceleration));
+  const double horizon = kReaction + brake / 2;
   double free = free_time(seen_->places, wanted, odom, horizon);
   if (!border_.empty()) free = std::min(free, free_time(border_, wanted, odom, horizon));
   const double k = speed_scale_before_movers(wanted, odom, now_s, brake);
   if (free >= horizon) return k;
   // The fraction k whose stopping distance, k reaction + k^2 brake / 2 (in s of driving `wanted`), fits.
-  return std::min(
-      k, (std::sqrt(params_.reaction * params_.reaction + 2 * brake * free) - params_.reaction) / brake);
+  return std::min(k, (std::sqrt(kReaction * kReaction + 2 * brake * free) - kReaction) / brake);
 }
 
 CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Pose2& odom, double now_s,
@@ -118,7 +120,7 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
   const bool ahead = moves.vx * wanted.vx + moves.vy * wanted.vy > 0;
   if (ahead && speed > kSlow && by_odometry <= kFastest * platform_.max_speed &&
       speed - speed_of(allowed) > lost) {
-    const double by_brakes = 1 - params_.braking_share * lost / speed;
+    const double by_brakes = 1 - kBrakingShare * lost / speed;
     const double braked = std::min(by_brakes, speed_scale(moves, odom, now_s));
     Twist2 braking = scaled(moves, braked);
     braking.vz = wanted.vz;
@@ -136,9 +138,8 @@ double CollisionMonitor::free_time(std::span<const NearPoints::Place> places, co
   const int steps = std::clamp(static_cast<int>(std::ceil(rim_speed * horizon / kStride)), 1, kMaxStrides);
   const double dt = horizon / steps;
 
-  const auto c = static_cast<float>(std::cos(odom.yaw)), s = static_cast<float>(std::sin(odom.yaw));
-  const auto x0 = static_cast<float>(odom.x), y0 = static_cast<float>(odom.y);
-  const double wide = radius + params_.points.max_uncertainty;
+  const IntoPose into(odom);
+  const double wide = radius + NearPoints::kMaxUncertainty;
   const auto far = static_cast<float>(wide + speed_of(velocity) * horizon);
   struct Point {
     float x, y, depth;
@@ -147,12 +148,12 @@ double CollisionMonitor::free_time(std::span<const NearPoints::Place> places, co
   std::array<Point, NearPoints::kMax> points;
   std::size_t count = 0;
   for (const NearPoints::Place& place : places) {
-    const float dx = place.x - x0, dy = place.y - y0;
+    const float dx = place.x - into.x, dy = place.y - into.y;
     if (dx * dx + dy * dy > far * far) continue;
-    const float x = c * dx + s * dy, y = c * dy - s * dx;
+    const Eigen::Vector2f at = into.turn(dx, dy);
     // The margin grows with the uncertainty of places with few, noisy returns.
-    points[count++] = {x, y,
-                       std::max(0.0f, body_.depth(x, y) + place.uncertainty) + kDeeper - place.uncertainty};
+    points[count++] = {at.x(), at.y(),
+                       std::max(0.0f, body_.depth(at) + place.uncertainty) + kDeeper - place.uncertainty};
   }
   if (count == 0) return horizon;
 
@@ -163,12 +164,11 @@ double CollisionMonitor::free_time(std::span<const NearPoints::Place> places, co
   const auto reach = static_cast<float>(wide * wide);
   for (int i = 0; i < steps; ++i) {
     pose = pose * half * Pose2{velocity.vx * dt, sideways * dt, 0} * half;
-    const auto pc = static_cast<float>(std::cos(pose.yaw)), ps = static_cast<float>(std::sin(pose.yaw));
-    const auto px = static_cast<float>(pose.x), py = static_cast<float>(pose.y);
+    const IntoPose into_body(pose);
     for (std::size_t j = 0; j < count; ++j) {
-      const float dx = points[j].x - px, dy = points[j].y - py;
+      const float dx = points[j].x - into_body.x, dy = points[j].y - into_body.y;
       if (dx * dx + dy * dy > reach) continue;
-      if (body_.depth(pc * dx + ps * dy, pc * dy - ps * dx) > points[j].depth) return i * dt;
+      if (body_.depth(into_body.turn(dx, dy)) > points[j].depth) return i * dt;
     }
   }
   return horizon;
@@ -181,32 +181,32 @@ double CollisionMonitor::speed_scale_before_movers(const Twist2& wanted, const P
   };
   std::array<Point, kMaxMoving> points;
   std::size_t count = 0;
-  const auto c = static_cast<float>(std::cos(odom.yaw)), s = static_cast<float>(std::sin(odom.yaw));
-  const auto x0 = static_cast<float>(odom.x), y0 = static_cast<float>(odom.y);
+  const IntoPose into(odom);
   const auto age = static_cast<float>(now_s - seen_->stamp_s);
-  const double longest = params_.reaction + brake;
+  const double longest = kReaction + brake;
   const auto own_way = static_cast<float>(wide_.radius() + speed_of(wanted) * longest);
   for (const Mover& mover : seen_->movers) {
     if (!mover.moves) continue;  // The scan shows it as a static obstacle.
     const Eigen::Vector2f& v = mover.velocity;
     const float far = own_way + v.norm() * static_cast<float>(longest);
     for (const Eigen::Vector2f& p : mover.surface()) {
-      const float dx = p.x() + age * v.x() - x0, dy = p.y() + age * v.y() - y0;
+      const float dx = p.x() + age * v.x() - into.x, dy = p.y() + age * v.y() - into.y;
       if (dx * dx + dy * dy > far * far) continue;
-      points[count++] = {c * dx + s * dy, c * dy - s * dx, c * v.x() + s * v.y(), c * v.y() - s * v.x()};
+      const Eigen::Vector2f at = into.turn(dx, dy), velocity = into.turn(v.x(), v.y());
+      points[count++] = {at.x(), at.y(), velocity.x(), velocity.y()};
     }
   }
   if (count == 0) return 1;
   const double sideways = wanted.vy + platform_.rear_axle() * wanted.wz;  // As above, for a car.
   const auto met = [&](double speed_scale) {
-    const double braking = speed_scale * brake, end = params_.reaction + braking;
+    const double braking = speed_scale * brake, end = kReaction + braking;
     const int steps = static_cast<int>(std::ceil(end / kTick));
     const auto radius2 = static_cast<float>(wide_.radius() * wide_.radius());
-    const auto through = static_cast<float>(params_.mover_margin);
+    const auto through = static_cast<float>(kMoverMargin);
     std::array<bool, kMaxMoving> gone{};
     Pose2 before{};
     for (int i = 1; i <= steps; ++i) {
-      const double t = end * i / steps, late = std::max(0.0, t - params_.reaction);
+      const double t = end * i / steps, late = std::max(0.0, t - kReaction);
       // Driven distance in s of driving `wanted`: first at the fraction, then braking.
       const double way = speed_scale * (t - late * late / (2 * std::max(braking, 1e-6)));
       const double half = wanted.wz * way / 2;
@@ -214,9 +214,7 @@ double CollisionMonitor::speed_scale_before_movers(const Twist2& wanted, const P
       const Pose2 pose =
           Pose2{0, 0, half} * Pose2{wanted.vx * chord, sideways * chord, 0} * Pose2{0, 0, half};
       const auto depth = [this](const Pose2& at, float x, float y) {
-        const auto pc = static_cast<float>(std::cos(at.yaw)), ps = static_cast<float>(std::sin(at.yaw));
-        const float dx = x - static_cast<float>(at.x), dy = y - static_cast<float>(at.y);
-        return wide_.depth(pc * dx + ps * dy, pc * dy - ps * dx);
+        return wide_.depth(IntoPose(at)(x, y));
       };
       for (std::size_t j = 0; j < count; ++j) {
         if (gone[j]) continue;

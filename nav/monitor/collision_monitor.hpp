@@ -8,20 +8,6 @@
 
 namespace adit::nav {
 
-/// Parameters of CollisionMonitor.
-struct CollisionMonitorParams {
-  NearPointsParams points{};
-  TrackerParams tracker{};
-  double margin{0.02};        ///< Safety margin around the footprint, m, [0, 0.2].
-  double mover_margin{0.10};  ///< Safety margin towards movers, m, [0, 0.5].
-  double reaction{0.15};      ///< Latency before braking begins, s, [0, 1].
-  /// Fraction of the platform's acceleration that is assumed for braking, (0, 1].
-  double braking_share{0.75};
-  double stale{0.5};  ///< An older scan is stale, s, (0, 10].
-  /// Speed limit of any part of the body when a robot is limited and not stopped, m/s.
-  double limit_speed{0.3};
-};
-
 /// Present motion of the robot by its odometry, at the centre of rotation: a car's rear axle. Without values
 /// it is unknown.
 struct Driven {
@@ -60,7 +46,9 @@ class CollisionMonitor {
     Cause cause{Cause::none};  ///< `stopped`: no motion is possible; under Policy::limit it continues slowly.
   };
 
-  explicit CollisionMonitor(const Platform& platform, const CollisionMonitorParams& params = {});
+  static constexpr double kStale = 0.5;  ///< An older scan is stale, s.
+
+  explicit CollisionMonitor(const Platform& platform);
 
   /// Makes a detector of the obstacles that this monitor needs.
   ObstacleDetector make_detector() const;
@@ -83,7 +71,7 @@ class CollisionMonitor {
   Twist2 instead_of(const Twist2& stopped, const Pose2& odom, double now_s) const;
   /// Forgets the scan, for example after a jump of the odometry: scans are stale until the next one.
   void clear();
-  bool fresh(double now_s) const { return now_s - seen_->stamp_s <= params_.stale; }
+  bool fresh(double now_s) const { return now_s - seen_->stamp_s <= kStale; }
 
  private:
   /// Time for which `velocity` can be driven until the body touches an obstacle, s, at most `horizon`.
@@ -98,7 +86,6 @@ class CollisionMonitor {
   double rim_speed(const Twist2& velocity) const;
 
   Platform platform_;
-  CollisionMonitorParams params_;
   Footprint body_, wide_;  ///< With the margins towards static obstacles and movers.
   std::vector<NearPoints::Place> border_{};
   std::shared_ptr<const DetectedObstacles> seen_;  ///< Never null.

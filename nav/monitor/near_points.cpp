@@ -5,11 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "nav/geometry/planar_transform.hpp"
-
 namespace adit::nav {
 namespace {
 
+constexpr double kShortestRange = 0.35;  ///< The lidar may see nothing at shorter range, m.
+constexpr double kPlaceMemory = 10.0;    ///< Lifetime of a place that newer scans cannot show, s.
+constexpr double kRangeNoise = 0.02;     ///< Standard deviation of a return's range, m.
 /// Margin at the edge of the fan of rays, where an obstacle may be missed, rise per metre.
 constexpr float kEdge = 0.06f;
 constexpr float kLevel = 1e-3f;       ///< A smaller rise per metre counts as level.
@@ -17,8 +18,8 @@ constexpr float kWithinCell = 0.10f;  ///< Distance over which ground may rise w
 constexpr float kPast = 0.15f;        ///< A ray must pass a place by this much to show that it is free, m.
 constexpr float kLevelRay = 0.1f;     ///< Returns at most this much below the lidar come from level rays, m.
 constexpr float kNotSeen = 1e9f;      ///< Lowest return of a cell without returns.
-constexpr std::array kBefore{0.1f, 0.15f, 0.2f,
-                             0.25f};  ///< Distances before a riser at which its tread is searched, m.
+/// Distances before a riser at which its tread is searched, m.
+constexpr std::array kBefore{0.1f, 0.15f, 0.2f, 0.25f};
 constexpr float kFlat = 0.14f;  ///< A cell with a larger height range holds a vertical face and no tread, m.
 /// Noise of the height range of many returns, m.
 constexpr float kSpread = 0.04f;
@@ -44,9 +45,8 @@ Traversability near_limits(const Platform& platform) {
 
 }  // namespace
 
-NearPoints::NearPoints(const Platform& platform, double reach, const NearPointsParams& params)
+NearPoints::NearPoints(const Platform& platform, double reach)
     : platform_(platform),
-      params_(params),
       limits_(near_limits(platform)),
       body_(platform),
       reach_(static_cast<float>(std::min(reach, kCell * kSide / 2.0 - 2 * kCell))),
@@ -57,18 +57,6 @@ NearPoints::NearPoints(const Platform& platform, double reach, const NearPointsP
   used_.reserve(cells_.size());
   places_.reserve(kMax);
   remembered_.reserve(kMax);
-}
-
-std::size_t NearPoints::coarse(float x, float y) {
-  const int i = static_cast<int>(x / (2 * kCell) + kCoarse / 2.0f);
-  const int j = static_cast<int>(y / (2 * kCell) + kCoarse / 2.0f);
-  return static_cast<std::size_t>(j * kCoarse + i);
-}
-
-std::size_t NearPoints::fine(float x, float y) {
-  const int i = static_cast<int>(x / kCell + kSide / 2.0f);
-  const int j = static_cast<int>(y / kCell + kSide / 2.0f);
-  return static_cast<std::size_t>(j * kSide + i);
 }
 
 bool NearPoints::seen_again(const Eigen::Vector2f& local) const {
@@ -199,7 +187,7 @@ bool NearPoints::hidden(const Eigen::Vector3d& local, const Fan& fan) const {
   if (static_cast<float>(std::hypot(local.x(), local.y())) > reach_) return false;
   const Eigen::Vector3d ray = local - fan.lidar;
   const auto range = static_cast<float>(std::hypot(ray.x(), ray.y()));
-  if (range < static_cast<float>(params_.shortest)) return true;
+  if (range < static_cast<float>(kShortestRange)) return true;
   const float rise = static_cast<float>(ray.z()) / range;
   const float edge = kEdge * (fan.highest - fan.lowest) - kLevel;
   return rise < fan.lowest + edge || rise > fan.highest - edge;
@@ -216,7 +204,7 @@ void NearPoints::remember(const Pose3& body, const Tilt& tilt, const Fan& fan, d
   remembered_.clear();
   const PlanarTransform back(body.planar().inverse());
   for (Place& place : places_) {
-    if (stamp_s - place.seen > params_.memory) continue;
+    if (stamp_s - place.seen > kPlaceMemory) continue;
     const Eigen::Vector2d at = back * Eigen::Vector2d(place.x, place.y);
     const bool again = seen_again(at.cast<float>());
     if (again) place.seen = stamp_s;
@@ -237,11 +225,10 @@ void NearPoints::take(const ScanPoints& scan, const Pose3& body, double stamp_s,
   const auto rank = [this](std::uint32_t i) {
     return std::pair{cells_[i].x * cells_[i].x + cells_[i].y * cells_[i].y, i};
   };
-  const auto mean = [this](std::uint32_t i) {
+  for (const std::uint32_t i : used_) {
     cells_[i].x /= static_cast<float>(cells_[i].count);
     cells_[i].y /= static_cast<float>(cells_[i].count);
-  };
-  for (const std::uint32_t i : used_) mean(i);
+  }
   // The mean of a cell's returns. Where a cell beyond it along the rays, within the noise of a range, has
   // many more, these few are noise of the same surface, and the mean of both counts. Of few returns that is
   // not known.
@@ -249,37 +236,27 @@ void NearPoints::take(const ScanPoints& scan, const Pose3& body, double stamp_s,
     const Cell& cell = cells_[i];
     const Eigen::Vector2f at(cell.x, cell.y);
     const Cell* most = nullptr;
-    for (const int row : {-kSide, 0, kSide})
-      for (int k = -1; k <= 1; ++k) {
-        const auto beside = static_cast<std::int64_t>(i) + row + k;
-        if (beside < 0 || beside >= static_cast<std::int64_t>(cells_.size())) continue;
-        const Cell& other = cells_[static_cast<std::size_t>(beside)];
-        if (other.count < kTail * cell.count) continue;
-        const float beyond = (Eigen::Vector2f(other.x, other.y) - at).dot(at.normalized());
-        const bool noise = beyond > 0 && beyond < 3 * static_cast<float>(params_.noise);
-        if (noise && (!most || other.count > most->count)) most = &other;
-      }
+    visit_around(i, [&](const Cell& other) {
+      if (other.count < kTail * cell.count) return;
+      const float beyond = (Eigen::Vector2f(other.x, other.y) - at).dot(at.normalized());
+      const bool noise = beyond > 0 && beyond < 3 * static_cast<float>(kRangeNoise);
+      if (noise && (!most || other.count > most->count)) most = &other;
+    });
     if (!most) return at;
     const float own = static_cast<float>(cell.count) / static_cast<float>(cell.count + most->count);
     return own * at + (1 - own) * Eigen::Vector2f(most->x, most->y);
   };
   const PlanarTransform to_odom(body.planar());
   const std::size_t room = kMax - places_.size();
-  if (used_.size() > room)
-    std::sort(used_.begin(), used_.end(), [&](auto a, auto b) { return rank(a) < rank(b); });
+  if (used_.size() > room) std::ranges::sort(used_, {}, rank);
   for (const std::uint32_t i : used_) {
     if (places_.size() == kMax) break;
     int around = 0;
-    for (const int row : {-kSide, 0, kSide})
-      for (int k = -1; k <= 1; ++k) {
-        const auto beside = static_cast<std::int64_t>(i) + row + k;
-        if (beside >= 0 && beside < static_cast<std::int64_t>(cells_.size()))
-          around += cells_[static_cast<std::size_t>(beside)].count;
-      }
+    visit_around(i, [&around](const Cell& cell) { around += cell.count; });
     if (around < kMinReturns) continue;
     const double uncertainty =
-        std::min(params_.max_uncertainty, 3 * params_.noise / std::sqrt(static_cast<double>(around)));
-    const bool certain = uncertainty < params_.noise / 2;
+        std::min(kMaxUncertainty, 3 * kRangeNoise / std::sqrt(static_cast<double>(around)));
+    const bool certain = uncertainty < kRangeNoise / 2;
     const Eigen::Vector2f place = certain ? surface(i) : Eigen::Vector2f(cells_[i].x, cells_[i].y);
     const Eigen::Vector2d at = to_odom * place.cast<double>();
     places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()),

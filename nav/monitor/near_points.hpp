@@ -13,14 +13,6 @@
 
 namespace adit::nav {
 
-/// Parameters of NearPoints.
-struct NearPointsParams {
-  double shortest{0.35};         ///< The lidar may see nothing at shorter range, m, [0, 1].
-  double memory{10.0};           ///< Lifetime of a place that newer scans cannot show, s, [0, 60].
-  double noise{0.02};            ///< Standard deviation of a return's range, m, [0, 0.2].
-  double max_uncertainty{0.05};  ///< Upper limit of the position uncertainty, m, [0, 0.2].
-};
-
 /// Obstacles near the robot by its newest scan alone, without a map or a ground model. A return is an
 /// obstacle when it is higher than the ground can be at its distance, much higher than the return directly
 /// below it, or at a place where an obstacle was seen before. Places that the newest scan cannot show, below
@@ -32,7 +24,8 @@ struct NearPointsParams {
 /// obstacle only if it is too high above the higher of both planes, and is examined from the lower one on.
 class NearPoints {
  public:
-  static constexpr std::size_t kMax = 4096;  ///< Maximum number of places; the nearest remain.
+  static constexpr std::size_t kMax = 4096;        ///< Maximum number of places; the nearest remain.
+  static constexpr double kMaxUncertainty = 0.05;  ///< Upper limit of Place::uncertainty, m.
   /// Position of an obstacle, odometry frame, m: the mean of the returns in one 5 cm cell.
   struct Place {
     float x{}, y{};
@@ -42,7 +35,7 @@ class NearPoints {
   };
 
   /// `reach`: radius around base_link, m, (0, 4].
-  NearPoints(const Platform& platform, double reach, const NearPointsParams& params = {});
+  NearPoints(const Platform& platform, double reach);
 
   /// Takes a scan; pose of the body in the odometry frame; time, s; and the range image of the scan.
   void take(const ScanPoints& scan, const Pose3& body, double stamp_s, const UprightRangeImage& seen);
@@ -65,8 +58,22 @@ class NearPoints {
     float lowest{1e9f}, highest{-1e9f};
   };
 
-  static std::size_t coarse(float x, float y);
-  static std::size_t fine(float x, float y);
+  /// Index of the cell of (x, y) in a square of `side` cells of `size` metres around base_link.
+  static std::size_t index(float x, float y, float size, int side) {
+    const int i = static_cast<int>(x / size + static_cast<float>(side) / 2);
+    const int j = static_cast<int>(y / size + static_cast<float>(side) / 2);
+    return static_cast<std::size_t>(j * side + i);
+  }
+  static std::size_t coarse(float x, float y) { return index(x, y, 2 * kCell, kCoarse); }
+  static std::size_t fine(float x, float y) { return index(x, y, kCell, kSide); }
+  /// Calls `visit(cell)` for a cell and those around it.
+  template <class Visit>
+  void visit_around(std::uint32_t index, Visit&& visit) const {
+    for (const int row : {-kSide, 0, kSide})
+      for (int k = -1; k <= 1; ++k)
+        if (const auto at = std::int64_t{index} + row + k; at >= 0 && at < std::ssize(cells_))
+          visit(cells_[at]);
+  }
   /// Tilt of the body. Level axes are those of base_link turned upright, with its yaw.
   struct Tilt {
     Eigen::Matrix3f R_level_base{Eigen::Matrix3f::Identity()};
@@ -85,7 +92,6 @@ class NearPoints {
                  const UprightRangeImage& seen) const;
 
   Platform platform_;
-  NearPointsParams params_;
   Traversability limits_;
   Footprint body_;
   float reach_;

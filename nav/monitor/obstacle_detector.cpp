@@ -7,20 +7,15 @@
 #include "core/config/traversability.hpp"
 
 namespace adit::nav {
-namespace {
 
-constexpr double kUpright = 0.9;  ///< Fraction of the tilt limit below which a tilted body may drive again.
-
-}  // namespace
-
-ObstacleDetector::ObstacleDetector(const Platform& platform, double reach, const NearPointsParams& points,
-                                   const TrackerParams& tracker)
-    : near_(platform, reach, points), tracker_(platform, tracker), tilt_(Traversability::of(platform).tilt) {
+ObstacleDetector::ObstacleDetector(const Platform& platform, double reach)
+    : near_(platform, reach), tracker_(platform), tilt_(Traversability::of(platform).tilt) {
   detected_.places.reserve(NearPoints::kMax);
   detected_.movers.reserve(Tracker::kMax);
 }
 
 const DetectedObstacles& ObstacleDetector::look(const ScanPoints& scan, const Pose3& body, double stamp_s) {
+  constexpr double kUpright = 0.9;  // Fraction of the tilt limit below which a tilted body may drive again.
   tracker_.look(scan, body, stamp_s);
   near_.take(scan, body, stamp_s, tracker_.newest());
   detected_.places.assign(near_.places().begin(), near_.places().end());

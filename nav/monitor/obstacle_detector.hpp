@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "core/geometry/scan_points.hpp"
@@ -26,8 +25,7 @@ struct DetectedObstacles {
 class ObstacleDetector {
  public:
   /// `reach`: radius around base_link in which obstacles count, m, (0, 4].
-  ObstacleDetector(const Platform& platform, double reach, const NearPointsParams& points = {},
-                   const TrackerParams& tracker = {});
+  ObstacleDetector(const Platform& platform, double reach);
 
   /// Takes the newest scan; pose of the body in the odometry frame; time of arrival,
   /// s, not decreasing. The result is valid until the next call. Nothing is allocated after the first calls.

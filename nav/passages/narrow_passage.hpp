@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/config/platform.hpp"
-#include "nav/terrain/obstacle_point.hpp"
+#include "nav/routing/surface_map.hpp"
 
 namespace adit::nav {
 
@@ -21,10 +21,11 @@ struct NarrowPassage {
 /// odometry. Any path of the planner fits through a wider one.
 double narrow_width(const Platform& platform, double approach);
 
-/// Fits the widest straight strip between `obstacles`, which are relative to the middle of `guess`, m,
-/// starting from its middle and axis. Its sides need not be opposite each other. Returns nothing if one side
-/// is open.
-std::optional<NarrowPassage> fit_passage(const NarrowPassage& guess,
-                                         std::span<const ObstaclePoint> obstacles);
+/// Finds the first narrow passage on the first `ahead` metres of a route: a place where the widest straight
+/// strip between the obstacles on both sides is at most `width`, m. `beside`: minimum distance between the
+/// route and the obstacles, m. The narrow place in which the route begins does not count, but a door at the
+/// end of a corridor does. Returns nothing if there is no passage or the map is unknown there.
+std::optional<NarrowPassage> find_passage(const SurfaceMap& map, std::span<const Eigen::Vector3d> points,
+                                          double ahead, double width, double beside);
 
 }  // namespace adit::nav

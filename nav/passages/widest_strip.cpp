@@ -19,13 +19,12 @@ std::optional<WidestStrip> fit_once(const Pose2& guess, std::span<const Obstacle
   };
   std::array<Strip, 2 * kTurns + 1> strips;
   for (int n = -kTurns; n <= kTurns; ++n)
-    strips[static_cast<std::size_t>(n + kTurns)] = {static_cast<float>(std::cos(n * kTurn)),
-                                                    static_cast<float>(std::sin(n * kTurn))};
-  const auto c = static_cast<float>(std::cos(guess.yaw)), s = static_cast<float>(std::sin(guess.yaw));
+    strips[n + kTurns] = {static_cast<float>(std::cos(n * kTurn)), static_cast<float>(std::sin(n * kTurn))};
+  const IntoPose into(guess);
   for (const ObstaclePoint& o : obstacles) {
     if (o.cost < 1.0f) continue;
-    const float dx = o.x - static_cast<float>(guess.x), dy = o.y - static_cast<float>(guess.y);
-    const float x = c * dx + s * dy, y = c * dy - s * dx;
+    const Eigen::Vector2f at = into(o.x, o.y);
+    const float x = at.x(), y = at.y();
     if (std::fabs(x) > kAlong || std::fabs(y) > kAcross) continue;
     for (Strip& strip : strips) {
       const float across = strip.c * y - strip.s * x;

@@ -2,27 +2,22 @@
 #include "nav/planners/combined_planner.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace adit::nav {
-
-CombinedPlanner::CombinedPlanner(const Platform& platform, const FalcoPlannerParams& open,
-                                 std::shared_ptr<const PlannerLibrary> library,
-                                 const CombinedPlannerParams& params)
-    : platform_(platform), params_(params), open_(platform, open, std::move(library)), lattice_(platform) {}
 
 // Checks the straight line to the target, which the global planner keeps as far from obstacles as the route.
 bool CombinedPlanner::is_tight(const Target& target, const Pose2& pose,
                                std::span<const ObstaclePoint> obstacles) const {
+  constexpr double kAhead = 2.0;  // Distance that is checked along the route, beyond the braking distance, m.
   if (target.passage) return true;
   const Eigen::Vector2d to = pose.inverse() * target.goal;
   const double distance = to.norm();
   const double speed = lattice_.speed();
   const double braking = speed * speed / (2.0 * platform_.max_acceleration);
-  const auto length = static_cast<float>(std::min(distance, params_.ahead + braking));
+  const auto length = static_cast<float>(std::min(distance, kAhead + braking));
   const auto c = static_cast<float>(distance > 1e-6 ? to.x() / distance : 1.0);
   const auto s = static_cast<float>(distance > 1e-6 ? to.y() / distance : 0.0);
-  const auto near = static_cast<float>(platform_.width / 2 + params_.clearance);
+  const auto near = static_cast<float>(platform_.width / 2 + kClearance);
   for (const ObstaclePoint& o : obstacles) {
     if (o.cost < 1.0f) continue;
     const float along = c * o.x + s * o.y, across = c * o.y - s * o.x;
@@ -38,7 +33,8 @@ void CombinedPlanner::choose(const Target& target, const Pose2& pose,
     tight_ = instead_ = false;
     return;
   }
-  const bool gone = (pose.position() - switched_at_).norm() > params_.hysteresis;
+  constexpr double kHysteresis = 1.0;  // m after the last tight place, where open space begins.
+  const bool gone = (pose.position() - switched_at_).norm() > kHysteresis;
   if (instead_ && !gone) return;
   instead_ = false;
   const bool tight = is_tight(target, pose, obstacles);

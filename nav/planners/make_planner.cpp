@@ -20,8 +20,7 @@ Error no_planner(const std::string& name) {
 }
 
 Result<void> fits(const Platform& platform) {
-  const auto& names = planner_names();
-  if (std::find(names.begin(), names.end(), platform.planner) == names.end())
+  if (std::ranges::find(planner_names(), platform.planner) == planner_names().end())
     return no_planner(platform.planner);
   if (!platform.turns_on_spot() && platform.planner != "lattice")
     return {Reason::bad_argument,
@@ -29,13 +28,13 @@ Result<void> fits(const Platform& platform) {
   return {};
 }
 
-Result<std::unique_ptr<Planner>> make_planner(const Platform& platform, const FalcoPlannerParams& params,
+Result<std::unique_ptr<Planner>> make_planner(const Platform& platform,
                                               std::shared_ptr<const PlannerLibrary> library) {
   if (const auto checked = fits(platform); !checked) return checked.error();
   if (platform.planner == "trajectories" && platform.router != "none")
-    return std::unique_ptr<Planner>(std::make_unique<CombinedPlanner>(platform, params, std::move(library)));
+    return std::unique_ptr<Planner>(std::make_unique<CombinedPlanner>(platform, std::move(library)));
   if (platform.planner == "trajectories")
-    return std::unique_ptr<Planner>(std::make_unique<FalcoPlanner>(platform, params, std::move(library)));
+    return std::unique_ptr<Planner>(std::make_unique<FalcoPlanner>(platform, std::move(library)));
   if (platform.planner == "vfh") return std::unique_ptr<Planner>(std::make_unique<VfhPlanner>(platform));
   return std::unique_ptr<Planner>(std::make_unique<HybridAStarPlanner>(platform));
 }

@@ -14,9 +14,9 @@ const std::vector<std::string>& planner_names();
 Error no_planner(const std::string& name);
 /// Checks that the platform's planner exists and supports its drive. Errors: bad_argument, with the cause.
 Result<void> fits(const Platform& platform);
-/// Creates the planner that the platform names. `params` and `library` belong to `trajectories`; the library
-/// is built when null. Errors: those of fits().
-Result<std::unique_ptr<Planner>> make_planner(const Platform& platform, const FalcoPlannerParams& params = {},
+/// Creates the planner that the platform names. `library` belongs to `trajectories`; it is built when null.
+/// Errors: those of fits().
+Result<std::unique_ptr<Planner>> make_planner(const Platform& platform,
                                               std::shared_ptr<const PlannerLibrary> library = nullptr);
 
 }  // namespace adit::nav

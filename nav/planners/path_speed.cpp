@@ -41,16 +41,15 @@ double path_speed(const Plan& plan, const Pose2& pose, const Footprint& body, co
     const Pose2 at = back * path[i];
     const double before = braking * spacing * static_cast<double>(i);
     if (top * top <= before) break;  // The robot can brake for anything from here on.
-    const auto c = static_cast<float>(std::cos(at.yaw)), s = static_cast<float>(std::sin(at.yaw));
-    const auto x0 = static_cast<float>(at.x), y0 = static_cast<float>(at.y);
+    const IntoPose into(at);
     float clear = enough;
     for (const ObstaclePoint& o : obstacles) {
-      const float dx = o.x - x0, dy = o.y - y0;
+      const float dx = o.x - into.x, dy = o.y - into.y;
       if (o.cost < 1.0f || dx * dx + dy * dy > reach * reach) continue;
-      clear = std::min(clear, -body.depth(c * dx + s * dy, c * dy - s * dx));
+      clear = std::min(clear, -body.depth(into.turn(dx, dy)));
     }
     double own = params.caution + params.caution_gain * std::max(0.0f, clear);
-    if (nearest[sector(at.y, at.x)] + kBehind < std::hypot(x0, y0)) own = std::min(own, params.blind);
+    if (nearest[sector(at.y, at.x)] + kBehind < std::hypot(into.x, into.y)) own = std::min(own, params.blind);
     if (own * own + before < top * top) top = std::sqrt(own * own + before);
   }
   return top;

@@ -22,6 +22,6 @@ struct PathSpeedParams {
 /// clearance. Where the path enters space that is hidden from `pose`, it is low enough for obstacles that may
 /// come out. Later places count as far as the distance to them is too short for braking.
 double path_speed(const Plan& plan, const Pose2& pose, const Footprint& body, const Platform& platform,
-                  std::span<const ObstaclePoint> obstacles, const PathSpeedParams& params);
+                  std::span<const ObstaclePoint> obstacles, const PathSpeedParams& params = {});
 
 }  // namespace adit::nav

@@ -29,8 +29,7 @@ struct Target {
   bool last{true};      ///< The route ends at the goal.
   double end_speed{0};  ///< Speed at the goal that the rest of the route permits, m/s.
   bool nudges{false};   ///< Without a path to the goal, away from obstacles that nearly touch the robot.
-  std::optional<Pose2>
-      passage{};  ///< Narrow passage before the goal: its centre and heading, odometry frame.
+  std::optional<Pose2> passage{};  ///< Narrow passage before the goal: centre and heading, odometry frame.
 
   static Target to(const Eigen::Vector2d& goal, double speed = 0.0) {
     return {.kind = Kind::goal, .goal = goal, .speed = speed};
@@ -72,9 +71,6 @@ struct Plan {
   double max_speed{0};       ///< m/s
   double length{0};          ///< Length of the path, m.
   double clearance{0};       ///< Distance from the footprint to the nearest obstacle, m, at most 2.
-  int heading{0};            ///< Bearing of the chosen heading, degrees from the body's x axis.
-  int group{-1};             ///< Chosen group of the trajectory library.
-  int option{-1};  ///< Chosen library option: 0 long with wide margins, last short with the least margins.
 
   std::array<Pose2, kMaxPath> poses{};  ///< Odometry frame, from the robot on.
   std::uint32_t pose_count{0};

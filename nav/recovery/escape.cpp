@@ -43,7 +43,7 @@ std::optional<Plan> Escape::plan(const Pose2& pose, std::span<const ObstaclePoin
     std::pop_heap(open_.begin(), open_.end());
     const std::int32_t index = open_.back().node;
     open_.pop_back();
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    const Node& node = nodes_[index];
     if (node.direction != 0 && node.depth <= -static_cast<float>(kClear)) return write(index, pose);
     expand(index);
   }
@@ -67,14 +67,14 @@ void Escape::expand(std::int32_t index) {
 }
 
 void Escape::offer(std::int32_t from, const Pose2& motion, int direction, float cost) {
-  const Node& before = nodes_[static_cast<std::size_t>(from)];
+  const Node& before = nodes_[from];
   const Pose2 pose = before.pose * motion;
   const int x = static_cast<int>(std::floor(pose.x / kCell)) + kSide / 2;
   const int y = static_cast<int>(std::floor(pose.y / kCell)) + kSide / 2;
   if (x < 0 || y < 0 || x >= kSide || y >= kSide || nodes_.size() == kMaxNodes || open_.size() == kMaxNodes)
     return;
   const int turn = static_cast<int>(std::lround(pose.yaw / kTurn) + 2 * kTurns) % kTurns;
-  auto& closed = closed_[static_cast<std::size_t>((turn * kSide + y) * kSide + x)];
+  auto& closed = closed_[(turn * kSide + y) * kSide + x];
   if (closed == round_) return;
   const float depth = points_.depth(body_, pose);
   if (depth > std::max(before.least, -kMinClearance) + kCloser) return;
@@ -104,21 +104,19 @@ Side Escape::side_of(std::span<const ObstaclePoint> obstacles) const {
 Plan Escape::write(std::int32_t index, const Pose2& pose) const {
   std::array<std::int32_t, Plan::kMaxPath> chain;
   std::size_t length = 0;
-  for (std::int32_t i = index; i > 0; i = nodes_[static_cast<std::size_t>(i)].parent) {
+  for (std::int32_t i = index; i > 0; i = nodes_[i].parent) {
     if (length == chain.size()) std::copy(chain.begin() + 1, chain.end(), chain.begin()), --length;
     chain[length++] = i;
   }
   Plan plan{};
   Pose2 start{};
-  while (length > 0 && nodes_[static_cast<std::size_t>(chain[length - 1])].direction == 0)
-    start = nodes_[static_cast<std::size_t>(chain[--length])].pose;
+  while (length > 0 && nodes_[chain[length - 1]].direction == 0) start = nodes_[chain[--length]].pose;
   plan.turn_first = start.yaw != 0.0;
   plan.turn = start.yaw > 0 ? 1 : start.yaw < 0 ? -1 : 0;
   plan.poses[plan.pose_count++] = pose * start;
-  const int direction = length > 0 ? nodes_[static_cast<std::size_t>(chain[length - 1])].direction : 1;
-  while (length > 0 && nodes_[static_cast<std::size_t>(chain[length - 1])].direction == direction &&
-         plan.pose_count < Plan::kMaxPath)
-    plan.poses[plan.pose_count++] = pose * nodes_[static_cast<std::size_t>(chain[--length])].pose;
+  const int direction = length > 0 ? nodes_[chain[length - 1]].direction : 1;
+  while (length > 0 && nodes_[chain[length - 1]].direction == direction && plan.pose_count < Plan::kMaxPath)
+    plan.poses[plan.pose_count++] = pose * nodes_[chain[--length]].pose;
   plan.reverse = direction < 0;
   plan.length = kStep * static_cast<double>(plan.pose_count - 1);
   plan.max_speed = kSpeed;

@@ -35,9 +35,8 @@ class Escape {
   struct Node {
     Pose2 pose{};
     float cost{};
-    float depth{},
-        /// Depth of the deepest obstacle in the body, m, negative outside; and its minimum along the path.
-        least{};
+    float depth{};  ///< Of the deepest obstacle in the body, m, negative outside.
+    float least{};  ///< Its minimum along the path, m.
     std::int32_t parent{-1};
     std::int8_t direction{};  ///< Driving direction that leads here, 1 or -1; 0: a turn on the spot.
   };

@@ -5,14 +5,6 @@
 #include <cmath>
 
 namespace adit::nav {
-namespace {
-
-constexpr double kTurns = 0.35;     // rad: beyond this error the robot turns on the spot before it backs up.
-constexpr double kTurnStep = 0.15;  // rad: headings of that turn that are checked.
-// m: a way back that begins farther from the robot is not its own.
-constexpr double kOff = 0.4;
-
-}  // namespace
 
 WayBack::WayBack(const Platform& platform)
     : platform_(platform), body_(platform), grown_(body_.grown(kMargin, kMargin)) {}
@@ -27,27 +19,28 @@ void WayBack::note(const Pose2& pose) {
       next = {newest().x + share * way.x(), newest().y + share * way.y(),
               wrap_angle(newest().yaw + share * wrap_angle(pose.yaw - newest().yaw))};
     }
-    if (count_ == kMax)
-      first_ = (first_ + 1) % kMax;
-    else
-      ++count_;
-    poses_[(first_ + count_ - 1) % kMax] = next;
+    if (count_ == kMax) {
+      std::shift_left(poses_.begin(), poses_.end(), 1);
+      --count_;
+    }
+    poses_[count_++] = next;
   }
 }
 
 bool WayBack::is_free(const Footprint& body, const Pose2& at, std::span<const ObstaclePoint> obstacles,
                       float depth) {
-  const auto c = static_cast<float>(std::cos(at.yaw)), s = static_cast<float>(std::sin(at.yaw));
-  const auto x = static_cast<float>(at.x), y = static_cast<float>(at.y);
+  const IntoPose into(at);
   const auto reach = static_cast<float>(body.radius());
-  return std::none_of(obstacles.begin(), obstacles.end(), [&](const ObstaclePoint& o) {
-    const float dx = o.x - x, dy = o.y - y;
-    return o.cost >= 1.0f && dx * dx + dy * dy < reach * reach &&
-           body.depth(c * dx + s * dy, c * dy - s * dx) > depth;
+  return std::ranges::none_of(obstacles, [&](const ObstaclePoint& o) {
+    const float dx = o.x - into.x, dy = o.y - into.y;
+    return o.cost >= 1.0f && dx * dx + dy * dy < reach * reach && body.depth(into.turn(dx, dy)) > depth;
   });
 }
 
 std::optional<Plan> WayBack::plan(const Pose2& pose, std::span<const ObstaclePoint> obstacles) {
+  constexpr double kTurns = 0.35;  // rad: beyond this error the robot turns on the spot before it backs up.
+  constexpr double kTurnStep = 0.15;  // rad: headings of that turn that are checked.
+  constexpr double kOff = 0.4;        // m: a way back that begins farther from the robot is not its own.
   // What the robot has backed along already is no way back any more.
   while (count_ > 1 && (newest(1).position() - pose.position()).norm() <=
                            (newest().position() - pose.position()).norm() + 1e-9)

@@ -35,7 +35,7 @@ class WayBack {
   static constexpr double kSpacing = 0.1;  ///< m
   static constexpr std::size_t kMax = static_cast<std::size_t>(kLength / kSpacing);
 
-  const Pose2& newest(std::size_t back = 0) const { return poses_[(first_ + count_ - 1 - back) % kMax]; }
+  const Pose2& newest(std::size_t back = 0) const { return poses_[count_ - 1 - back]; }
   /// Whether no obstacle is deeper in the body than `depth`, m.
   static bool is_free(const Footprint& body, const Pose2& at, std::span<const ObstaclePoint> obstacles,
                       float depth);
@@ -43,7 +43,7 @@ class WayBack {
   Platform platform_;
   Footprint body_, grown_;
   std::array<Pose2, kMax> poses_{};
-  std::size_t first_{0}, count_{0};
+  std::size_t count_{0};
 };
 
 }  // namespace adit::nav

@@ -24,8 +24,7 @@ const std::vector<Eigen::Vector2d>& offsets() {
     for (int y = -most; y <= most; ++y)
       for (int x = -most; x <= most; ++x)
         if (std::hypot(x, y) <= most) grid.emplace_back(kPlaceSpacing * x, kPlaceSpacing * y);
-    std::stable_sort(grid.begin(), grid.end(),
-                     [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
+    std::ranges::stable_sort(grid, {}, [](const Eigen::Vector2d& at) { return at.squaredNorm(); });
     return grid;
   }();
   return all;

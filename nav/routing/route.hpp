@@ -44,7 +44,6 @@ struct Route {
   Standing goal{Standing::standable};  ///< Of the goal, if it was checked.
 
   bool found() const { return status == RouteStatus::found; }
-  bool attempt() const { return unknown_length > 0.0; }
 };
 
 /// The first `length` metres of a line through points. Frame and unit of the points.

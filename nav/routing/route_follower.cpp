@@ -10,6 +10,16 @@
 namespace adit::nav {
 namespace {
 
+/// Replaces the route only if the new cost is below this fraction of the current one.
+constexpr double kSwitchRatio = 0.85;
+constexpr double kLookPeriod = 0.5;     // Of the search for a better route, s.
+constexpr double kGain = 0.5;           // Required gain of a new route, m.
+constexpr double kFarthestAhead = 4.0;  // Distance along the route to the local planner's target, m.
+constexpr double kProof = 2.0;          // A goal is unreachable after failing for this long, s.
+constexpr double kCuts = 0.3;           // A corner is cut by so much, m.
+constexpr double kBrakingShare = 0.7;   // Fraction of the platform's acceleration used for planned braking.
+// Speed at a goal that the robot passes, m/s: what lies behind may be hidden.
+constexpr double kPassing = 0.6;
 constexpr double kMoved = 0.05;       // m: a goal that moved by more has another route.
 constexpr double kReachAhead = 0.9;   // m: without a passage, a blocked route is blocked so far ahead.
 constexpr double kSampling = 0.5;     // m
@@ -23,8 +33,8 @@ constexpr double kReported = 3.0;       // m before a passage: it is reported to
 constexpr double kNear = 2.5;  // m: from nearer, only changes larger than the following replace a passage.
 constexpr double kShifted = 0.10;  // m
 constexpr double kTurned = 5.0 * M_PI / 180.0;
-constexpr double kOneCorner =
-    110.0 * M_PI / 180.0;         // rad: greatest turn that the local planner drives itself.
+// rad: greatest turn that the local planner drives itself.
+constexpr double kOneCorner = 110.0 * M_PI / 180.0;
 constexpr double kRoomy = 1.3;    // A metre of a route with room costs at most this, m.
 constexpr double kDetour = 1.03;  // A straight line may cost at most this factor of the route.
 
@@ -48,6 +58,26 @@ Eigen::Vector3d on_axis(const NarrowPassage& passage, double behind) {
 }
 
 }  // namespace
+
+Target target_of(const RouteStep& step) {
+  if (step.state != RouteStep::State::along) return {};
+  Target target = Target::to(step.target.head<2>());
+  target.route = step.route;
+  target.last = step.last;
+  target.end_speed = step.end_speed;
+  if (!step.last) target.tolerance = RouteStep::kTolerance;
+  if (step.passage)
+    target.passage = {step.passage->middle.x(), step.passage->middle.y(),
+                      std::atan2(step.passage->axis.y(), step.passage->axis.x())};
+  return target;
+}
+
+RecoveryInput recovery_input(const RouteStep& step) {
+  return {.route = step.route,
+          .left = step.length,
+          .unreachable = step.state == RouteStep::State::unreachable,
+          .start_blocked = step.state == RouteStep::State::start_blocked};
+}
 
 // Shortens the route to the part from its point nearest to the robot. Only the first metres are searched, so
 // a route that returns beside itself is not cut. Corners that the robot passed at a distance are dropped.
@@ -92,9 +122,9 @@ void RouteFollower::look_around(RoutePlanner& planner, const RouteRequest& reque
     end = false;
   }
   if (end) return;
-  planner.block(there, request.stamp_s);
+  planner.map().block(there, request.stamp_s);
   Route other = planner.plan(request.place, request.goal);
-  if (!other.found() && request.ask == RouteAsk::around_if_found) return planner.unblock_last();
+  if (!other.found() && request.ask == RouteAsk::around_if_found) return planner.map().unblock_last();
   passage_.reset();
   take(std::move(other), false);
 }
@@ -168,7 +198,7 @@ void RouteFollower::watch_passage(RoutePlanner& planner, const Eigen::Vector3d& 
 // corner by itself, wider and faster than to a target in the corner; but not round two.
 double RouteFollower::least_ahead(RoutePlanner& planner) const {
   double length = 0, turned = 0;
-  for (std::size_t i = 0; i + 1 < route_.points.size() && length < params_.sweeping_ahead; ++i) {
+  for (std::size_t i = 0; i + 1 < route_.points.size() && length < sweeping_ahead_; ++i) {
     const Eigen::Vector2d leg = (route_.points[i + 1] - route_.points[i]).head<2>();
     if (i > 0) {
       const Eigen::Vector2d before = (route_.points[i] - route_.points[i - 1]).head<2>();
@@ -177,17 +207,17 @@ double RouteFollower::least_ahead(RoutePlanner& planner) const {
     if (turned > kOneCorner) break;
     length += leg.norm();
   }
-  if (length < params_.sweeping_ahead) return params_.least_ahead;
-  length = params_.sweeping_ahead;
+  if (length < sweeping_ahead_) return kLeastAhead;
+  length = sweeping_ahead_;
   const bool roomy = cost_to(planner, length) <= kRoomy * length + kRouteCell;
-  return roomy ? length : params_.least_ahead;
+  return roomy ? length : kLeastAhead;
 }
 
 // Computes the farthest point of the route, up to `ahead`, with a straight line to it that keeps the same
 // clearance as the route.
 RouteStep RouteFollower::along(RoutePlanner& planner, const Eigen::Vector3d& place) {
   RouteStep step{.state = RouteStep::State::along, .route = number_, .last = false};
-  if (params_.passages) watch_passage(planner, place);
+  if (passages_) watch_passage(planner, place);
   if (passage_) {
     step.target = on_axis(*passage_, kBeyondPassage);
     step.passage = passage_;
@@ -195,7 +225,7 @@ RouteStep RouteFollower::along(RoutePlanner& planner, const Eigen::Vector3d& pla
   }
   const Eigen::Vector3d from{place.x(), place.y(), route_.points.front().z()};
   const double least = least_ahead(planner);
-  for (double ahead = params_.ahead; ahead >= least; ahead -= kSampling) {
+  for (double ahead = kFarthestAhead; ahead >= least; ahead -= kSampling) {
     step.target = point_at(route_.points, ahead, step.last);
     const LineCost direct = planner.line(from, step.target, {.relax_start = true, .relax_end = step.last});
     if (direct.passable && direct.cost <= kDetour * cost_to(planner, ahead) + kRouteCell) return step;
@@ -207,8 +237,8 @@ RouteStep RouteFollower::along(RoutePlanner& planner, const Eigen::Vector3d& pla
 // The speed at the target from which the robot can still drive round the next corners and stop at the goal.
 // A corner of angle a that is cut by c has the radius c cos(a/2) / (1 - cos(a/2)).
 double RouteFollower::end_speed(const RouteStep& step, const Eigen::Vector3d& place, bool pass) const {
-  const double braking = 2 * params_.braking_share * max_acceleration_;
-  const double at_goal = pass ? params_.passing : 0.0;
+  const double braking = 2 * kBrakingShare * max_acceleration_;
+  const double at_goal = pass ? kPassing : 0.0;
   if (step.last) return std::min(at_goal, max_speed_);
   // The route behind the target, which lies beside it: from the corner after the nearest place on it.
   std::size_t after = 0;
@@ -235,7 +265,7 @@ double RouteFollower::end_speed(const RouteStep& step, const Eigen::Vector3d& pl
     const double cosine = std::clamp(in.dot(out) / (in.norm() * out.norm()), -1.0, 1.0);
     const double half = std::sqrt((1 + cosine) / 2);  // Cosine of half the angle.
     if (half > 1 - 1e-6) continue;
-    const double fastest = 0.8 * max_turn_ * params_.cuts * half / (1 - half);
+    const double fastest = 0.8 * max_turn_ * kCuts * half / (1 - half);
     squared = std::min(squared, fastest * fastest);
   }
   return std::min(std::sqrt(squared), max_speed_);
@@ -265,7 +295,7 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
   const bool open = request.ask == RouteAsk::open, asked = request.ask != RouteAsk::none && !open;
   if (planner.map().used() == 0) return {.replanned = asked};
   if (open) {
-    planner.unblock();
+    planner.map().unblock();
     looked_.reset();
   }
   if (route_.found()) {
@@ -274,15 +304,13 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
   }
   const bool lost = route_.found() && !planner.measure(route_);
   const bool usable = route_.found() && !lost;
-  if (lost || moved || !looked_ || request.stamp_s - *looked_ >= params_.look) {
+  if (lost || moved || !looked_ || request.stamp_s - *looked_ >= kLookPeriod) {
     looked_ = request.stamp_s;
     Route other = planner.plan(place, request.goal);
-    const bool better =
-        other.cost < route_.cost * params_.switch_ratio && other.cost < route_.cost - params_.gain;
+    const bool better = other.cost < route_.cost * kSwitchRatio && other.cost < route_.cost - kGain;
     if (other.found()) goal_ = request.goal;
     if (!usable || (other.found() && (better || moved)))
-      take(std::move(other),
-           route_.found() && !better && std::fabs(other.length - route_.length) < params_.gain);
+      take(std::move(other), route_.found() && !better && std::fabs(other.length - route_.length) < kGain);
   }
   RouteStep step{};
   if (route_.found()) {
@@ -292,11 +320,11 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
     add_ahead(step);
   } else if (route_.status == RouteStatus::start_blocked) {
     step.state = RouteStep::State::start_blocked;
-  } else if (planner.has_blocked_places()) {
+  } else if (planner.map().has_blocked_places()) {
     step.state = RouteStep::State::blocked;
   } else {
     if (!unreachable_since_) unreachable_since_ = request.stamp_s;
-    if (request.stamp_s - *unreachable_since_ >= params_.proof) step.state = RouteStep::State::unreachable;
+    if (request.stamp_s - *unreachable_since_ >= kProof) step.state = RouteStep::State::unreachable;
   }
   step.replanned = asked;
   return step;

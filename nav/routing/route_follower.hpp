@@ -9,24 +9,6 @@
 
 namespace adit::nav {
 
-/// Parameters of RouteFollower.
-struct RouteFollowerParams {
-  /// Replaces the route only if the new cost is below this fraction of the current one, (0, 1].
-  double switch_ratio{0.85};
-  double look{0.5};         ///< Period of the search for a better route, s, [0, 10].
-  double gain{0.5};         ///< Required gain of a new route, m, [0, 10].
-  double ahead{4.0};        ///< Distance along the route to the local planner's target, m, [1, 10].
-  double least_ahead{1.2};  ///< Minimum of that distance, except at the goal, m, [0.3, 5].
-  /// The same round one corner with room beside the route: the local planner drives a wide curve, m, [1, 10].
-  double sweeping_ahead{3.0};
-  bool passages{true};        ///< Reports narrow passages, for planners that line up before them.
-  double proof{2.0};          ///< A goal is unreachable after failing for this long, s, [0, 10].
-  double cuts{0.3};           ///< A corner is cut by so much, m, (0, 2].
-  double braking_share{0.7};  ///< Fraction of the platform's acceleration used for planned braking, (0, 1].
-  /// Speed at a goal that the robot passes, m/s, [0, 5]: what lies behind it may be hidden.
-  double passing{0.6};
-};
-
 /// Where a robot is, and where it is to go. Frame of the map, m.
 struct RouteRequest {
   Eigen::Vector3d place{0, 0, 0};
@@ -68,19 +50,24 @@ struct RouteStep {
   bool replanned{};               ///< Answers the request for another way.
 };
 
+/// The local planner's target for a step; none without a route. Frame: that of the route.
+Target target_of(const RouteStep& step);
+/// What a recovery is to know of a step.
+RecoveryInput recovery_input(const RouteStep& step);
+
 /// Follows a route with hysteresis: replaces the current route only when a new one is clearly better or the
 /// current one is blocked, so that it does not alternate between two similar routes.
 class RouteFollower {
  public:
-  explicit RouteFollower(const RouteFollowerParams& params = {}) : params_(params) {}
-  /// Uses the default parameters for the platform's planner, and its limits for the speed at targets.
+  RouteFollower() = default;
+  /// With the platform's planner and limits.
   explicit RouteFollower(const Platform& platform)
       : max_speed_(platform.max_speed),
         max_turn_(platform.max_turn),
         max_acceleration_(platform.max_acceleration) {
-    params_.passages = platform.planner != "vfh";
+    passages_ = platform.planner != "vfh";
     // On stairs a route leads round what only may be a step: a wide curve would lead across it.
-    if (platform.stairs) params_.sweeping_ahead = params_.least_ahead;
+    if (platform.stairs) sweeping_ahead_ = kLeastAhead;
   }
 
   /// Computes the next local goal after a scan.
@@ -101,7 +88,11 @@ class RouteFollower {
   void watch_passage(RoutePlanner& planner, const Eigen::Vector3d& place);
   void take(Route route, bool same);
 
-  RouteFollowerParams params_{};
+  // Minimum of RouteStep::target's distance, except at the goal, m.
+  static constexpr double kLeastAhead = 1.2;
+  /// The same round one corner with room beside the route: the local planner drives a wide curve, m.
+  double sweeping_ahead_{3.0};
+  bool passages_{true};  ///< Reports narrow passages, for planners that line up before them.
   double max_speed_{0}, max_turn_{0}, max_acceleration_{0};
   Route route_{};
   std::uint32_t number_{0};  ///< Of the route; each other one has a greater number.

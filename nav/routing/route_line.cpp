@@ -5,17 +5,9 @@
 #include <cmath>
 
 namespace adit::nav {
-namespace {
-
-constexpr double kResample = 0.5;     // m
-constexpr double kLongestLeg = 40.0;  // Maximum length of a leg, m.
-constexpr int kGiveUp = 3;            // Consecutive corners without a straight line.
-constexpr double kRelaxedLength =
-    0.5;  // m at the ends of a line, where cells may be too narrow but must be free.
-
-}  // namespace
 
 LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends) {
+  constexpr double kRelaxedLength = 0.5;  // m at an end, where cells may be too narrow but must be free.
   const Eigen::Vector2d way = to.head<2>() - from.head<2>();
   const double length = way.norm();
   const int steps = std::max(1, static_cast<int>(std::ceil(length / kRouteCell)));
@@ -75,6 +67,8 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
 }
 
 void RouteLine::shorten_once(std::vector<Eigen::Vector3d>& points) {
+  constexpr double kLongestLeg = 40.0;  // Maximum length of a leg, m.
+  constexpr int kGiveUp = 3;            // Consecutive corners without a straight line.
   if (points.size() < 3) return;
   std::vector<double> before(points.size(), 0.0);
   for (std::size_t i = 1; i < points.size(); ++i)
@@ -101,6 +95,7 @@ void RouteLine::shorten_once(std::vector<Eigen::Vector3d>& points) {
 }
 
 void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) {
+  constexpr double kResample = 0.5;  // m
   shorten_once(points);
   std::vector<Eigen::Vector3d> dense;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {

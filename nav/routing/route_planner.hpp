@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/geometry/pose.hpp"
 #include "core/geometry/scan_points.hpp"
-#include "nav/routing/find_passage.hpp"
+#include "nav/passages/narrow_passage.hpp"
 #include "nav/routing/ground_registration.hpp"
-#include "nav/routing/route_graph.hpp"
+#include "nav/routing/route_line.hpp"
+#include "nav/routing/route_search.hpp"
 #include "nav/routing/scan_profile.hpp"
 
 namespace adit::nav {
@@ -43,34 +43,23 @@ class RoutePlanner {
   /// search serves all goals. The costs are those along the graph before straightening, so plan()'s are lower
   /// by some per cent. `goals`: as for plan().
   std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals);
-  /// Sets the other robots of the team, which cost a route that leads through them.
-  void set_team(std::vector<TeamPlace> team) { map_.set_team(std::move(team)); }
-  /// Forgets an obstacle: a robot was seen there.
-  void clear_obstacle(const Eigen::Vector3d& place) { map_.clear_obstacle(place.x(), place.y(), place.z()); }
-  /// Marks a place as blocked regardless of the scans, for RouteParams::block_time.
-  void block(const Eigen::Vector3d& place, double stamp_s);
-  bool has_blocked_places() const;
-  /// Takes the last block back.
-  void unblock_last() { map_.unblock_last(); }
-  /// Ends all blocks; a place that is blocked again is so for longer.
-  void unblock() { map_.expire(std::numeric_limits<double>::infinity()); }
-  /// Sets the areas that no route leaves or enters, in the frame of the poses.
-  void set_areas(const AreaSet& areas) { map_.set_areas(areas); }
   /// The first passage on the first `ahead` metres of a route that is narrower than narrow_width().
   std::optional<NarrowPassage> passage(std::span<const Eigen::Vector3d> points, double ahead) const {
     return find_passage(map_, points, ahead, passage_width_, platform_.width / 2);
   }
 
   LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends = {}) {
-    return graph_.line().line(from, to, ends);
+    return line_.line(from, to, ends);
   }
   /// Updates the costs, lengths and unknown legs of a route; false if it is not passable any more.
-  bool measure(Route& route) { return graph_.line().measure(route); }
+  bool measure(Route& route) { return line_.measure(route); }
   /// Height of the free ground nearest to z; nothing if it is unknown.
-  std::optional<double> ground(double x, double y, double z) const { return graph_.ground(x, y, z); }
+  std::optional<double> ground(double x, double y, double z) const;
   const SurfaceMap& map() const { return map_; }
+  /// For what is known from elsewhere than scans: areas, other robots, places that were found blocked.
+  SurfaceMap& map() { return map_; }
   /// Number of nodes that the last search expanded.
-  std::size_t expanded() const { return graph_.search().expanded(); }
+  std::size_t expanded() const { return search_.expanded(); }
   /// Memory of map, graph and search, bytes.
   std::size_t memory() const;
   /// Forgets everything, for example after a jump of the poses.
@@ -80,13 +69,20 @@ class RoutePlanner {
   }
 
  private:
+  bool is_blocked_between(const Eigen::Vector3d& place, int ix, int iy) const;
+  std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach);
+  double goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  void finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
   Platform platform_;
   RouteParams params_;
   double passage_width_;  // m: the robot must cross narrower passages straight.
   SurfaceMap map_;
   ScanProfile profile_;
   GroundRegistration registration_{};
-  RouteGraph graph_;
+  TileBuilder builder_;
+  RouteLine line_;
+  RouteSearch search_;
 };
 
 }  // namespace adit::nav

@@ -30,7 +30,7 @@ float straight_cost(const Tile& tile, int from, int to) {
     for (const auto& [ex, ey] : {std::pair{-1e-6, -1e-6}, {1e-6, -1e-6}, {-1e-6, 1e-6}, {1e-6, 1e-6}}) {
       const int x = static_cast<int>(from % kTileSide + 0.5 + t * dx + ex);
       const int y = static_cast<int>(from / kTileSide + 0.5 + t * dy + ey);
-      cost = tile.cost[static_cast<std::size_t>(y * kTileSide + x)];
+      cost = tile.cost[y * kTileSide + x];
       if (cost == 0) return kUnreached;
     }
     sum += cost;
@@ -144,7 +144,7 @@ void RouteSearch::begin(const RouteEnd& start) {
     const Tile& tile = builder_.current(map_, start.tile);
     builder_.spread(tile, start.cell);
     for (int n = 0; n < tile.node_count; ++n)
-      if (const float d = builder_.distance(tile.nodes[static_cast<std::size_t>(n)].cell); d < kUnreached)
+      if (const float d = builder_.distance(tile.nodes[n].cell); d < kUnreached)
         reach(static_cast<Id>(start.tile * kTileNodes + n), d, start_id_);
     if (start.tile == goal_.tile)
       if (const float d = builder_.distance(goal_.cell); d < kUnreached) reach(goal_id_, d, start_id_);
@@ -170,8 +170,7 @@ RouteStatus RouteSearch::search(const RouteEnd& start, const RouteEnd& goal,
   if (goal.tile >= 0) {
     const Tile& tile = builder_.current(map_, goal.tile);
     builder_.spread(tile, goal.cell);
-    for (int n = 0; n < tile.node_count; ++n)
-      to_goal_[static_cast<std::size_t>(n)] = builder_.distance(tile.nodes[static_cast<std::size_t>(n)].cell);
+    for (int n = 0; n < tile.node_count; ++n) to_goal_[n] = builder_.distance(tile.nodes[n].cell);
   }
   begin(start);
   while (!open_.empty()) {
@@ -202,8 +201,7 @@ std::vector<RouteSearch::ManyGoal> RouteSearch::goals_by_tile(std::span<const Ro
     for (std::size_t n = 0; n < static_cast<std::size_t>(tile.node_count); ++n)
       goal.from_node[n] = builder_.distance(tile.nodes[n].cell);
   }
-  std::sort(sorted.begin(), sorted.end(),
-            [](const ManyGoal& a, const ManyGoal& b) { return a.tile < b.tile; });
+  std::ranges::sort(sorted, {}, &ManyGoal::tile);
   return sorted;
 }
 
@@ -227,8 +225,7 @@ bool RouteSearch::costs(const RouteEnd& start, std::span<const RouteEnd> goals, 
     s.closed = true;
     ++expanded_;
     const int tile = static_cast<int>(id / kTileNodes);
-    const auto first = std::lower_bound(sorted.begin(), sorted.end(), tile,
-                                        [](const ManyGoal& g, int index) { return g.tile < index; });
+    const auto first = std::ranges::lower_bound(sorted, tile, {}, &ManyGoal::tile);
     bool cheaper = false;
     for (auto goal = first; goal != sorted.end() && goal->tile == tile; ++goal) {
       const float cost = s.cost + goal->from_node[id % kTileNodes];
@@ -253,13 +250,12 @@ void RouteSearch::expand_tile(int index, int node, float cost, Id id) {
   const Tile& tile = map_.tile(index);
   const auto distances = builder_.distances(map_, index, node);
   for (int m = 0; m < tile.node_count; ++m) {
-    const float d = distances[static_cast<std::size_t>(m)];
+    const float d = distances[m];
     if (m != node && d < kUnreached) reach(static_cast<Id>(index * kTileNodes + m), cost + d, id);
   }
   if (index == goal_.tile)
-    if (const float d = to_goal_[static_cast<std::size_t>(node)]; d < kUnreached)
-      reach(goal_id_, cost + d, id);
-  cross(tile, tile.nodes[static_cast<std::size_t>(node)], cost, id);
+    if (const float d = to_goal_[node]; d < kUnreached) reach(goal_id_, cost + d, id);
+  cross(tile, tile.nodes[node], cost, id);
 }
 
 // The place along a side where both tiles are open and the ground continues without a step, nearest to both
@@ -269,8 +265,8 @@ int RouteSearch::meeting_place(const Tile& a, const TileNode& from, const Tile& 
   const int middle = (from.first + from.last + to.first + to.last) / 4;
   int best = -1;
   for (int i = first; i <= last; ++i) {
-    const GroundCell& p = a.cells[static_cast<std::size_t>(side_cell(from.side, i))];
-    const GroundCell& q = b.cells[static_cast<std::size_t>(side_cell(to.side, i))];
+    const GroundCell& p = a.cells[side_cell(from.side, i)];
+    const GroundCell& q = b.cells[side_cell(to.side, i)];
     const float most = builder_.most_rise(p, q);
     const float pz = p.known ? p.z : a.z, qz = q.known ? q.z : b.z;
     if (std::abs(pz - qz) <= most && (best < 0 || std::abs(i - middle) < std::abs(best - middle))) best = i;
@@ -298,7 +294,7 @@ void RouteSearch::cross(const Tile& tile, const TileNode& node, float cost, Id i
     met = true;
     builder_.current(map_, i);
     for (int m = 0; m < other.node_count; ++m) {
-      const TileNode& to = other.nodes[static_cast<std::size_t>(m)];
+      const TileNode& to = other.nodes[m];
       if (!meets(tile, node, other, to)) continue;
       const float length = static_cast<float>((cell_place(other, to.cell) - here).norm());
       reach(static_cast<Id>(i * kTileNodes + m),
@@ -325,7 +321,7 @@ void RouteSearch::enter_from_virtual(const VirtualNode& g, float cost, Id id) {
     met = true;
     builder_.current(map_, i);
     for (int m = 0; m < other.node_count; ++m) {
-      const TileNode& to = other.nodes[static_cast<std::size_t>(m)];
+      const TileNode& to = other.nodes[m];
       if (to.side != opposite(g.side) || std::abs(to.z - z) > kFloorSeparation) continue;
       reach(static_cast<Id>(i * kTileNodes + m),
             cost + static_cast<float>((cell_place(other, to.cell) - here).head<2>().norm()) *

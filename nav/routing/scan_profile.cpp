@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace adit::nav {
@@ -41,15 +42,12 @@ double rise_between_returns(const Traversability& limits) {
 }  // namespace
 
 ScanProfile::ScanProfile(const Platform& platform, const RouteParams& params)
-    : ScanProfile(platform, params, Traversability::of(platform)) {}
-
-ScanProfile::ScanProfile(const Platform& platform, const RouteParams& params, const Traversability& limits)
     : platform_(platform),
       params_(params),
-      clear_(static_cast<float>(limits.headroom)),
-      step_(static_cast<float>(limits.obstacle)),
-      drop_(static_cast<float>(limits.drop)),
-      slope_(static_cast<float>(rise_between_returns(limits))) {
+      clear_(static_cast<float>(Traversability::of(platform).headroom)),
+      step_(static_cast<float>(Traversability::of(platform).obstacle)),
+      drop_(static_cast<float>(Traversability::of(platform).drop)),
+      slope_(static_cast<float>(rise_between_returns(Traversability::of(platform)))) {
   list_sectors();
 }
 
@@ -86,15 +84,14 @@ void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& bod
   sorted_.resize(unsorted_.size());
   std::vector<int>& next = begin_;
   for (std::size_t i = 0; i < unsorted_.size(); ++i)
-    sorted_[static_cast<std::size_t>(next[static_cast<std::size_t>(direction_[i])]++)] = unsorted_[i];
+    sorted_[next[static_cast<std::size_t>(direction_[i])]++] = unsorted_[i];
   // Each entry is now the end of its direction, which is the beginning of the next.
   for (std::size_t d = kDirections; d > 0; --d) begin_[d] = begin_[d - 1];
   begin_[0] = 0;
   for (std::size_t d = 0; d < kDirections; ++d)
-    std::sort(sorted_.begin() + begin_[d], sorted_.begin() + begin_[d + 1],
-              [](const Return& a, const Return& b) {
-                return a.range < b.range || (a.range == b.range && a.z < b.z);
-              });
+    std::sort(
+        sorted_.begin() + begin_[d], sorted_.begin() + begin_[d + 1],
+        [](const Return& a, const Return& b) { return std::tie(a.range, a.z) < std::tie(b.range, b.z); });
 }
 
 // Whether a return behind the first obstacle belongs to an obstacle and not to higher ground that the lidar
@@ -205,12 +202,11 @@ void ScanProfile::list_sectors() {
       const double range = std::hypot(dx, dy) * kRouteCell;
       const int sector = static_cast<int>(std::atan2(dy, dx) * (kDirections / (2 * M_PI)));
       if (range <= params_.range && sector < kQuarter)
-        sectors[static_cast<std::size_t>(sector)].push_back(
+        sectors[sector].push_back(
             {static_cast<std::int16_t>(dx), static_cast<std::int16_t>(dy), static_cast<float>(range)});
     }
   for (std::size_t d = 0; d < kQuarter; ++d) {
-    std::sort(sectors[d].begin(), sectors[d].end(),
-              [](const SectorCell& a, const SectorCell& b) { return a.range < b.range; });
+    std::ranges::sort(sectors[d], {}, &SectorCell::range);
     quarter_.insert(quarter_.end(), sectors[d].begin(), sectors[d].end());
     first_[d + 1] = quarter_.size();
   }
@@ -219,8 +215,8 @@ void ScanProfile::list_sectors() {
 void ScanProfile::write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const {
   const auto sector = static_cast<std::size_t>(direction % kQuarter);
   const int turns = direction / kQuarter + 2;  // Quarter turns: direction 0 is -x.
-  const int cx = route_cell(from_.at.x()),
-            cy = route_cell(from_.at.y());  // Ranges are from the lidar's foot.
+  // Ranges are from the lidar's foot.
+  const int cx = route_cell(from_.at.x()), cy = route_cell(from_.at.y());
   std::size_t i = first_[sector];
   for (const Piece& p : pieces) {
     const float run = std::max(p.to - p.from, 1e-3f);

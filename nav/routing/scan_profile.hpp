@@ -30,7 +30,6 @@ class ScanProfile {
   void add(const ScanPoints& scan, const Pose3& body, SurfaceMap& map);
 
  private:
-  ScanProfile(const Platform& platform, const RouteParams& params, const Traversability& limits);
   static constexpr int kDirections = 360;
   static constexpr int kQuarter = kDirections / 4;
   struct Return {

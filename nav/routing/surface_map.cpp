@@ -2,6 +2,7 @@
 #include "nav/routing/surface_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace adit::nav {
 namespace {
@@ -27,7 +28,7 @@ float step_around(const Tile& tile, int x, int y, float z) {
   float least = -1;
   for (int v = std::max(0, y - 2); v <= std::min(kTileSide - 1, y + 2); ++v)
     for (int u = std::max(0, x - 2); u <= std::min(kTileSide - 1, x + 2); ++u) {
-      const GroundCell& cell = tile.cells[static_cast<std::size_t>(v * kTileSide + u)];
+      const GroundCell& cell = tile.cells[v * kTileSide + u];
       if (!cell.known) continue;
       const float d = std::abs(cell.z - z);
       if (least < 0 || d < least) least = d;
@@ -105,8 +106,8 @@ int SurfaceMap::beside(const Tile& t, int dx, int dy) const {
     for (int k = 0; k < kTileSide && (dx == 0 || dy == 0); ++k) {
       const int x = dx == 0 ? k : dx > 0 ? last : 0, y = dy == 0 ? k : dy > 0 ? last : 0;
       const int u = dx == 0 ? k : last - x, v = dy == 0 ? k : last - y;
-      const GroundCell& p = t.cells[static_cast<std::size_t>(y * kTileSide + x)];
-      const GroundCell& q = other.cells[static_cast<std::size_t>(v * kTileSide + u)];
+      const GroundCell& p = t.cells[y * kTileSide + x];
+      const GroundCell& q = other.cells[v * kTileSide + u];
       if (!p.known || !q.known) continue;
       sum += std::abs(p.z - q.z);
       ++count;
@@ -288,7 +289,7 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   const float range = seen >= Seen::given ? 0.0f : static_cast<float>(range_of(ix, iy));
   const int index = surface_layer(ix, iy, z);
   Tile& t = tile(index);
-  GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  GroundCell& cell = t.cells[cell_in_tile(ix, iy)];
   if (!cell.known) {
     cell = {};
     (void)update_height(cell, z, range, measured);
@@ -317,11 +318,11 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   mark_around(t, ix, iy);
 }
 
-void SurfaceMap::clear_obstacle(double x, double y, double z) {
-  const int ix = route_cell(x), iy = route_cell(y);
-  const int index = at_cell(ix, iy, z);
+void SurfaceMap::clear_obstacle(const Eigen::Vector3d& place) {
+  const int ix = route_cell(place.x()), iy = route_cell(place.y());
+  const int index = at_cell(ix, iy, place.z());
   if (index < 0) return;
-  GroundCell& cell = tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  GroundCell& cell = tile(index).cells[cell_in_tile(ix, iy)];
   if (!cell.blocked) return;
   cell.blocked = false;
   cell.evidence = 0;
@@ -334,7 +335,7 @@ void SurfaceMap::see_obstacle(float x, float y, float z, float obstacle_height, 
   const int ix = route_cell(x), iy = route_cell(y);
   const int index = surface_layer(ix, iy, z);
   Tile& t = tile(index);
-  GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  GroundCell& cell = t.cells[cell_in_tile(ix, iy)];
   if (!cell.known) {
     cell = {.z = z, .known = true};
     mark_dirty(index);
@@ -369,6 +370,24 @@ void SurfaceMap::see_obstacle(float x, float y, float z, float obstacle_height, 
   mark_around(t, ix, iy);
 }
 
+double SurfaceMap::team_cost(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  constexpr double kSameFloor = 1.0;  // m
+  const Eigen::Vector2d way = (to - from).head<2>();
+  const double length = way.norm();
+  double cost = 0.0;
+  for (const TeamPlace& robot : team_) {
+    if (length < 1e-6 || std::fabs((from.z() + to.z()) / 2 - robot.place.z()) > kSameFloor) continue;
+    const Eigen::Vector2d to_robot = (robot.place - from).head<2>();
+    const double along = to_robot.dot(way) / length;
+    const double half2 = robot.radius * robot.radius - to_robot.squaredNorm() + along * along;
+    if (half2 <= 0.0) continue;
+    const double half = std::sqrt(half2);
+    const double chord = std::min(along + half, length) - std::max(along - half, 0.0);
+    if (chord > 0.0) cost += robot.cost * chord / (2 * robot.radius);
+  }
+  return cost;
+}
+
 void SurfaceMap::mark_place(const BlockedPlace& place) {
   const int reach = route_cell(place.radius) + 1 + kTileHalo;
   const int ix = route_cell(place.x), iy = route_cell(place.y);
@@ -377,11 +396,11 @@ void SurfaceMap::mark_place(const BlockedPlace& place) {
       for (int i = first(tx, ty); i >= 0; i = tile(i).next) mark_dirty(i);
 }
 
-void SurfaceMap::block(double x, double y, double z, double now) {
-  const auto same = std::find_if(places_.begin(), places_.end(), [&](const BlockedPlace& p) {
-    return std::hypot(p.x - x, p.y - y) < kSamePlace && std::abs(p.z - z) < kFloorSeparation;
+void SurfaceMap::block(const Eigen::Vector3d& at, double now) {
+  const auto same = std::ranges::find_if(places_, [&](const BlockedPlace& p) {
+    return std::hypot(p.x - at.x(), p.y - at.y()) < kSamePlace && std::abs(p.z - at.z()) < kFloorSeparation;
   });
-  BlockedPlace place{x, y, z, params_.block_radius, 0, 1, true};
+  BlockedPlace place{at.x(), at.y(), at.z(), params_.block_radius, 0, 1, true};
   if (same != places_.end()) {
     place.times = std::min(same->times + 1, kMaxTimes);
     places_.erase(same);
@@ -393,6 +412,8 @@ void SurfaceMap::block(double x, double y, double z, double now) {
   places_.push_back(place);
   mark_place(place);
 }
+
+bool SurfaceMap::has_blocked_places() const { return std::ranges::any_of(places_, &BlockedPlace::active); }
 
 void SurfaceMap::unblock_last() {
   if (places_.empty()) return;

@@ -2,13 +2,13 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <unordered_map>
 #include <vector>
 
 #include "nav/areas/area_set.hpp"
 #include "nav/routing/route_params.hpp"
-#include "nav/routing/team_place.hpp"
 #include "nav/routing/tile.hpp"
 
 namespace adit::nav {
@@ -20,6 +20,14 @@ struct BlockedPlace {
   double until;   ///< Expiry time, s.
   int times;      ///< Number of times it was found blocked.
   bool active;    ///< In effect; else only remembered.
+};
+
+/// Another robot of the team on the ground. It blocks no cell, because it may move away, but a route through
+/// it costs more. Frame of the map, m.
+struct TeamPlace {
+  Eigen::Vector3d place{0.0, 0.0, 0.0};
+  double radius{};  ///< Of the disc that a route may not cross free of charge.
+  double cost{};    ///< Of a route across the middle of the disc, beside its length.
 };
 
 /// Map of the ground: tiles of 0.1 m cells with several floors at one place. It stores the evidence and a
@@ -42,23 +50,26 @@ class SurfaceMap {
   /// Starts a scan at this position. If there are too many tiles, the farthest ones are dropped.
   void begin_scan(double x, double y);
 
-  /// Blocks a place for a while, and longer if it was blocked before.
-  void block(double x, double y, double z, double now);
+  /// Blocks a place for RouteParams::block_time regardless of the scans, and longer if it was blocked before.
+  void block(const Eigen::Vector3d& place, double now);
   /// Takes the last block back, as if it had not been.
   void unblock_last();
   /// Ends expired blocks.
   void expire(double now);
+  /// Ends all blocks; a place that is blocked again is so for longer.
+  void unblock() { expire(std::numeric_limits<double>::infinity()); }
+  bool has_blocked_places() const;
   const std::vector<BlockedPlace>& blocked_places() const { return places_; }
 
   /// The other robots of the team; searches and lines charge for crossing them.
   void set_team(std::vector<TeamPlace> team) { team_ = std::move(team); }
   bool has_team() const { return !team_.empty(); }
-  double team_cost(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
-    return nav::team_cost(team_, from, to);
-  }
+  /// What a straight line costs for crossing them, beside its length, m.
+  double team_cost(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
   /// Forgets the obstacles at a place: what was seen there was a robot.
-  void clear_obstacle(double x, double y, double z);
-  /// Sets the areas that robots keep in or out of; all of the graph must be rebuilt.
+  void clear_obstacle(const Eigen::Vector3d& place);
+  /// Sets the areas that no route leaves or enters, in the frame of the poses; all of the graph must be
+  /// rebuilt.
   void set_areas(const AreaSet& areas);
   const AreaSet& areas() const { return areas_; }
 
@@ -72,17 +83,26 @@ class SurfaceMap {
   /// The ground cell in the tile of at_cell(); null if there is no tile.
   const GroundCell* cell(int ix, int iy, double z) const {
     const int index = at_cell(ix, iy, z);
-    return index < 0 ? nullptr : &tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+    return index < 0 ? nullptr : &tile(index).cells[cell_in_tile(ix, iy)];
+  }
+  /// Calls `visit(place)` for each obstacle at the height of `at`, up to `reach` away along x and y, m.
+  template <class Visit>
+  void visit_obstacles(const Eigen::Vector3d& at, double reach, Visit&& visit) const {
+    const int cells = static_cast<int>(reach / kRouteCell) + 1;
+    const int cx = route_cell(at.x()), cy = route_cell(at.y());
+    for (int iy = cy - cells; iy <= cy + cells; ++iy)
+      for (int ix = cx - cells; ix <= cx + cells; ++ix)
+        if (const GroundCell* found = cell(ix, iy, at.z()); found && found->blocked)
+          visit(obstacle_place(ix, iy, *found));
   }
   /// The neighbouring tile at (dx, dy) that continues this tile's floor, or -1.
   int beside(const Tile& tile, int dx, int dy) const;
-  const Tile& tile(int index) const { return *tiles_[static_cast<std::size_t>(index)]; }
-  Tile& tile(int index) { return *tiles_[static_cast<std::size_t>(index)]; }
+  const Tile& tile(int index) const { return *tiles_[index]; }
+  Tile& tile(int index) { return *tiles_[index]; }
   int size() const { return static_cast<int>(tiles_.size()); }
   int used() const { return used_; }
   /// The next tile that needs a rebuild, or -1.
   int next_dirty();
-  std::size_t dirty() const { return queue_.size(); }
 
   /// Bounding box of the map, in tiles.
   struct Extent {

@@ -43,18 +43,10 @@ inline constexpr float kAsideUnit = static_cast<float>(kRouteCell) / 250;  ///< 
 inline constexpr std::array<int, 4> kSideX{1, 0, -1, 0};
 inline constexpr std::array<int, 4> kSideY{0, 1, 0, -1};
 /// Index of the cell at position `i` along a side.
-inline constexpr int side_cell(int side, int i) {
-  constexpr int last = kTileSide - 1;
-  switch (side) {
-    case 0:
-      return i * kTileSide + last;
-    case 1:
-      return last * kTileSide + i;
-    case 2:
-      return i * kTileSide;
-    default:
-      return i;
-  }
+constexpr int side_cell(int side, int i) {
+  constexpr int kLast = kTileSide - 1;
+  constexpr std::array kFirst{kLast, kLast * kTileSide, 0, 0};
+  return kFirst[side] + i * (side % 2 == 0 ? kTileSide : 1);
 }
 
 /// A node of the graph: a run of passable cells on a side of a tile.
@@ -85,7 +77,7 @@ struct Tile {
   double cell_x(int c) const { return (tx * kTileSide + c % kTileSide + 0.5) * kRouteCell; }
   double cell_y(int c) const { return (ty * kTileSide + c / kTileSide + 0.5) * kRouteCell; }
   float cell_z(int c) const {
-    const GroundCell& cell = cells[static_cast<std::size_t>(c)];
+    const GroundCell& cell = cells[c];
     return cell.known ? cell.z : z;
   }
 };

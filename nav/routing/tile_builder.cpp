@@ -7,8 +7,6 @@
 #include <functional>
 #include <limits>
 
-#include "nav/terrain/riser.hpp"
-
 namespace adit::nav {
 namespace {
 
@@ -29,19 +27,15 @@ std::uint8_t in_units(double cost) {
 // The required clearance is less than the body needs, because the nearest cell's centre lies beside the
 // middle of a gap. The local planner is exact and reports when the robot does not fit.
 TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
-    : TileBuilder(platform, params, Traversability::of(platform)) {}
-
-TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, const Traversability& limits)
-    : hard_(std::max(platform.width / 2 - kAsideOfGap, kRouteCell)),
+    : limits_(Traversability::of(platform)),
+      hard_(std::max(platform.width / 2 - kAsideOfGap, kRouteCell)),
       comfort_(
           std::min(std::hypot(platform.length, platform.width) / 2 + params.comfort, kTileHalo * kRouteCell)),
       narrow_cost_(params.narrow_cost),
-      rise_(static_cast<float>(std::max(limits.step, limits.slope * kRouteCell) + limits.obstacle -
-                               limits.step + (platform.stairs ? kRiser : 0.0))),
+      rise_(static_cast<float>(std::max(limits_.step, limits_.slope * kRouteCell) + limits_.obstacle -
+                               limits_.step + (platform.stairs ? Traversability::kRiser : 0.0))),
       doubtful_rise_(std::max(rise_, kTall * kObstacleHeightUnit)),
       unknown_cost_(static_cast<float>(params.unknown_cost)),
-      step_(limits.obstacle),
-      slope_(limits.slope),
       climbs_stairs_(platform.stairs),
       through_unknown_(params.through_unknown),
       doubtful_cost_(in_units(params.doubtful_cost)),
@@ -63,7 +57,7 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
   const int y0 = std::max(0, oy), y1 = std::min(kWindow, oy + kTileSide);
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) {
-      const GroundCell& cell = from.cells[static_cast<std::size_t>((y - oy) * kTileSide + (x - ox))];
+      const GroundCell& cell = from.cells[(y - oy) * kTileSide + (x - ox)];
       if (!cell.known || std::abs(cell.z - z) > 2 * kFloorSeparation) continue;
       // The height of the ground under an obstacle is a guess and makes no step.
       const std::size_t at = in_window(x, y);
@@ -199,8 +193,9 @@ void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
     sure = sure && sure_[i] && !std::isnan(height_[i]);
   }
   const double run = kRouteCell * cells;
-  const double most = sure ? std::max(step_, slope_ * run + kSureNoise)
-                           : std::max(kTall * double{kObstacleHeightUnit}, step_ + slope_ * run + kNoise);
+  const double most =
+      sure ? std::max(limits_.obstacle, limits_.slope * run + kSureNoise)
+           : std::max(kTall * double{kObstacleHeightUnit}, limits_.obstacle + limits_.slope * run + kNoise);
   if (rise <= most || is_foot(height_[from] > height_[to] ? from : to)) return;
   for (std::size_t i = from + stride; i < to; i += stride)
     solid_[i] = cells < kSteep || known_[i];  // The ground below a stage is unknown.
@@ -209,7 +204,7 @@ void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
 bool TileBuilder::seems_steep(std::size_t from, std::size_t stride, int cells) const {
   const std::size_t to = from + stride * static_cast<std::size_t>(cells);
   const double rise = std::abs(seen_height_[from] - seen_height_[to]);
-  if (!(rise > std::max(step_, slope_ * kRouteCell * cells + kSureNoise))) return false;
+  if (!(rise > std::max(limits_.obstacle, limits_.slope * kRouteCell * cells + kSureNoise))) return false;
   for (std::size_t i = from; i <= to; i += stride)
     if (solid_[i] || doubtful_[i] > 0) return false;
   return !is_foot(seen_height_[from] > seen_height_[to] ? from : to);
@@ -258,7 +253,7 @@ void TileBuilder::measure(Tile& tile) {
       const double about = std::sqrt(static_cast<double>(least)) * kRouteCell;
       float cost = std::abs(about - hard_) < kRouteCell
                        ? cost_at(exact_clearance(x + kTileHalo, y + kTileHalo))
-                       : cost_of_[static_cast<std::size_t>(least)];
+                       : cost_of_[least];
       if (!tile.cells[c].known) cost = through_unknown_ ? std::min(255.0f, cost * unknown_cost_) : 0.0f;
       tile.cost[c] = static_cast<std::uint8_t>(cost);
     }
@@ -283,7 +278,7 @@ void TileBuilder::price_doubts(Tile& tile) const {
         for (int dx = -reach; dx <= reach; ++dx) {
           const int u = x + dx - kTileHalo, v = y + dy - kTileHalo;
           if (u < 0 || v < 0 || u >= kTileSide || v >= kTileSide || dx * dx + dy * dy > radius2) continue;
-          std::uint8_t& most = price[static_cast<std::size_t>(v * kTileSide + u)];
+          std::uint8_t& most = price[v * kTileSide + u];
           most = std::max(most, own);
         }
     }
@@ -299,33 +294,31 @@ void TileBuilder::add_node(Tile& tile, int side, int first, int last) {
   if (place < kTileNodes) {
     ++tile.node_count;
   } else {  // Drops the narrowest, which may be this one.
-    const auto narrowest = std::min_element(
-        tile.nodes.begin(), tile.nodes.end(),
-        [](const TileNode& a, const TileNode& b) { return a.last - a.first < b.last - b.first; });
+    const auto narrowest =
+        std::ranges::min_element(tile.nodes, {}, [](const TileNode& n) { return n.last - n.first; });
     if (narrowest->last - narrowest->first >= last - first) return;
     place = static_cast<int>(narrowest - tile.nodes.begin());
   }
   const int cell = side_cell(side, (first + last) / 2);
-  tile.nodes[static_cast<std::size_t>(place)] = {static_cast<std::uint8_t>(side),
-                                                 static_cast<std::uint8_t>(first),
-                                                 static_cast<std::uint8_t>(last),
-                                                 static_cast<std::uint8_t>(cell),
-                                                 static_cast<float>(tile.cell_x(cell)),
-                                                 static_cast<float>(tile.cell_y(cell)),
-                                                 tile.cell_z(cell)};
+  tile.nodes[place] = {static_cast<std::uint8_t>(side),
+                       static_cast<std::uint8_t>(first),
+                       static_cast<std::uint8_t>(last),
+                       static_cast<std::uint8_t>(cell),
+                       static_cast<float>(tile.cell_x(cell)),
+                       static_cast<float>(tile.cell_y(cell)),
+                       tile.cell_z(cell)};
 }
 
 void TileBuilder::open_sides(Tile& tile) {
   tile.node_count = 0;
   for (int side = 0; side < 4; ++side)
     for (int i = 0; i < kTileSide;) {
-      if (tile.cost[static_cast<std::size_t>(side_cell(side, i))] == 0) {
+      if (tile.cost[side_cell(side, i)] == 0) {
         ++i;
         continue;
       }
       int last = i;
-      while (last + 1 < kTileSide && tile.cost[static_cast<std::size_t>(side_cell(side, last + 1))] > 0)
-        ++last;
+      while (last + 1 < kTileSide && tile.cost[side_cell(side, last + 1)] > 0) ++last;
       add_node(tile, side, i, last);
       i = last + 1;
     }
@@ -340,7 +333,7 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
   std::array<bool, kTileArea> wanted{};
   int left = 0;
   for (int n = 0; to_nodes && n < tile.node_count; ++n) {
-    bool& node = wanted[tile.nodes[static_cast<std::size_t>(n)].cell];
+    bool& node = wanted[tile.nodes[n].cell];
     left += !node;
     node = true;
   }
@@ -349,11 +342,11 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
   std::array<std::uint8_t, kWide * kWide> costs{};
   for (int y = 0; y < kTileSide; ++y)
     std::copy_n(tile.cost.begin() + y * kTileSide, kTileSide, costs.begin() + (y + 1) * kWide + 1);
-  const auto cost_of = [&costs](int at) { return int{costs[static_cast<std::size_t>(at)]}; };
+  const auto cost_of = [&costs](int at) { return int{costs[at]}; };
   distance_.fill(kUnreached);
   before_.fill(-1);
   heap_.clear();
-  distance_[static_cast<std::size_t>(cell)] = 0;
+  distance_[cell] = 0;
   heap_.push_back(entry(0, cell));
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
@@ -375,9 +368,9 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
         const int next = static_cast<int>(at) + dy * kTileSide + dx;
         const float step = kRouteCellF * (across ? 1.41421356f : 1.0f);
         const float d = so_far + step * static_cast<float>(cost + own) / (2 * kUnit);
-        if (d >= distance_[static_cast<std::size_t>(next)]) continue;
-        distance_[static_cast<std::size_t>(next)] = d;
-        before_[static_cast<std::size_t>(next)] = static_cast<int>(at);
+        if (d >= distance_[next]) continue;
+        distance_[next] = d;
+        before_[next] = static_cast<int>(at);
         heap_.push_back(entry(d, next));
         std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
       }
@@ -386,13 +379,12 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
 
 void TileBuilder::connect(Tile& tile, int node) {
   // In a tile of uniform cost paths are straight.
-  const bool even = std::all_of(tile.cost.begin(), tile.cost.end(),
-                                [&](std::uint8_t c) { return c == tile.cost[0] && c > 0; });
-  const TileNode& from = tile.nodes[static_cast<std::size_t>(node)];
+  const bool even = std::ranges::all_of(tile.cost, [&](auto c) { return c == tile.cost[0] && c > 0; });
+  const TileNode& from = tile.nodes[node];
   if (!even) spread(tile, from.cell, true);
   for (int b = 0; b < tile.node_count; ++b) {
-    const TileNode& to = tile.nodes[static_cast<std::size_t>(b)];
-    tile.distance[static_cast<std::size_t>(node * kTileNodes + b)] =
+    const TileNode& to = tile.nodes[b];
+    tile.distance[node * kTileNodes + b] =
         even ? std::hypot(to.x - from.x, to.y - from.y) * static_cast<float>(tile.cost[0]) / kUnit
              : distance(to.cell);
   }

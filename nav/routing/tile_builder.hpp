@@ -44,14 +44,13 @@ class TileBuilder {
   /// Computes the distances from a cell to all others of its tile, m; see distance() and before().
   /// `to_nodes`: stops when the tile's nodes are reached.
   void spread(const Tile& tile, int cell, bool to_nodes = false);
-  float distance(int cell) const { return distance_[static_cast<std::size_t>(cell)]; }
+  float distance(int cell) const { return distance_[cell]; }
   /// The preceding cell on the path from the cell of spread(); -1 at that cell.
-  int before(int cell) const { return before_[static_cast<std::size_t>(cell)]; }
+  int before(int cell) const { return before_[cell]; }
   /// Cost of unknown space far from obstacles, per metre.
   float unknown_cost() const { return unknown_cost_; }
 
  private:
-  TileBuilder(const Platform& platform, const RouteParams& params, const Traversability& limits);
   /// In kObstacleHeightUnit: higher obstacles are walls or edges, also when seen from afar.
   static constexpr std::uint8_t kTall = 18;
   /// Whether a height proves anything: interpolated heights seen from afar do not.
@@ -79,18 +78,17 @@ class TileBuilder {
   /// Packs a distance and a cell into one number that sorts in the same order.
   static std::uint64_t entry(float distance, int cell);
 
+  Traversability limits_;
   double hard_, comfort_, narrow_cost_;  // Required and preferred clearance, m.
   float rise_, doubtful_rise_, unknown_cost_;
-  double step_, slope_;
   bool climbs_stairs_, through_unknown_;
   std::uint8_t doubtful_cost_, hole_cost_;                         // Per length, as Tile::cost.
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // By squared clearance in cells.
   // NaN: unknown. `seen_height_` has those, too, that prove nothing.
   std::array<float, kWindow * kWindow> height_{}, seen_height_{};
   std::array<bool, kWindow * kWindow> known_{}, sure_{}, has_obstacle_{}, solid_{};
-  std::array<std::uint8_t, kWindow * kWindow>
-      doubtful_{};       // Cost of what only seems to block; 0: nothing does.
-  bool all_sure_{true};  // All known cells of the window are.
+  std::array<std::uint8_t, kWindow * kWindow> doubtful_{};  // Cost of what only seems to block; 0: nothing.
+  bool all_sure_{true};                                     // All known cells of the window are.
   std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // Position of obstacles, kAsideUnit.
   std::array<float, kTileArea> distance_{};
   std::array<int, kTileArea> before_{};

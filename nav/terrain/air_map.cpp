@@ -6,8 +6,8 @@
 
 namespace adit::nav {
 
-AirMap::AirMap(const Platform& platform, const AirMapParams& params)
-    : platform_(platform), params_(params), body_(platform), grid_(static_cast<std::size_t>(kSide) * kSide) {
+AirMap::AirMap(const Platform& platform)
+    : platform_(platform), body_(platform), grid_(static_cast<std::size_t>(kSide) * kSide) {
   cells_.reserve(kMax);
 }
 
@@ -17,9 +17,13 @@ void AirMap::clear() {
 }
 
 void AirMap::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s) {
-  const auto low = static_cast<float>(-params_.margin);
-  const auto high = static_cast<float>(platform_.height + params_.margin);
-  const auto reach = static_cast<float>(params_.reach), own = static_cast<float>(-params_.own);
+  constexpr double kMargin = 0.12;  // Free height required above and below the body, m.
+  constexpr float kReach = 5.0f;    // Returns farther from the robot are ignored, m.
+  constexpr float kOwn = 0.03f;     // Returns within this distance of the footprint belong to the robot, m.
+  constexpr double kMemory = 0.7;   // A cell is kept for this long when the lidar should see it again, s.
+  constexpr double kHiddenMemory = 8.0;  // The same for one above or below the rays or too near, s.
+  constexpr float kShortest = 0.4f;      // The lidar may see nothing at shorter range, m.
+  const auto low = static_cast<float>(-kMargin), high = static_cast<float>(platform_.height + kMargin);
   const Eigen::Vector3f lidar = scan.origin(platform_.lidar_origin()).cast<float>();
   float lowest = 0.0f, highest = 0.0f;  // Range of the slopes of the first lidar's rays.
   for (const Eigen::Vector3f& p : scan.first()) {
@@ -31,7 +35,7 @@ void AirMap::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s)
   for (const Eigen::Vector3f& p : scan.all()) {
     const float range = std::hypot(p.x(), p.y());
     if (!(range > 0.1f && std::isfinite(p.z()))) continue;  // False when it is not a number.
-    if (range > reach || p.z() < low || p.z() > high || body_.depth(p.x(), p.y()) > own) continue;
+    if (range > kReach || p.z() < low || p.z() > high || body_.depth(p.x(), p.y()) > -kOwn) continue;
     const Eigen::Vector3d at = body * p.cast<double>();
     const auto i = static_cast<std::int32_t>(std::floor(at.x() / kCell));
     const auto j = static_cast<std::int32_t>(std::floor(at.y() / kCell));
@@ -56,11 +60,11 @@ void AirMap::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s)
     const auto range = static_cast<float>(std::hypot(local.x(), local.y()));
     const Eigen::Vector3f ray = local.cast<float>() - lidar;
     const float seen_range = ray.head<2>().norm(), rise = ray.z() / std::max(seen_range, 0.01f);
-    const bool hidden = seen_range < static_cast<float>(params_.shortest) || rise < lowest || rise > highest;
+    const bool hidden = seen_range < kShortest || rise < lowest || rise > highest;
     const double age = stamp_s - each.seen;
     constexpr float kPassed = 0.2f;  // m: the robot has left the height of the cell since it was seen.
     const auto z = static_cast<float>(local.z());
-    if (age > (hidden ? params_.hidden_memory : params_.memory) || range > reach || z < low - kPassed ||
+    if (age > (hidden ? kHiddenMemory : kMemory) || range > kReach || z < low - kPassed ||
         z > high + kPassed) {
       each.scans = 0;
       continue;

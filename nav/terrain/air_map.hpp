@@ -12,24 +12,13 @@
 
 namespace adit::nav {
 
-/// Parameters of AirMap.
-struct AirMapParams {
-  double margin{0.12};  ///< Free height required above and below the body, m, [0, 1].
-  double reach{5.0};    ///< Ignores returns farther from the robot, m, [1, 6].
-  double own{0.03};     ///< Returns within this distance of the footprint belong to the robot, m, [0, 0.5].
-  double memory{0.7};   ///< Keeps a cell for this long when the lidar should see it again, s, [0.1, 10].
-  /// The same for a cell that is above or below the rays or too near, s, [0.1, 60].
-  double hidden_memory{8.0};
-  double shortest{0.4};  ///< The lidar may see nothing at shorter range, m, [0, 1].
-};
-
 /// Obstacle map of a flying robot: 5 cm cells with returns at the height of its body. Returns below and
 /// above, the ground included, do not count. The size is fixed, and nothing is allocated after construction.
 class AirMap {
  public:
   static constexpr std::size_t kMax = 8192;  ///< Maximum number of cells().
 
-  explicit AirMap(const Platform& platform, const AirMapParams& params = {});
+  explicit AirMap(const Platform& platform);
 
   /// Takes one scan: points in base_link, m; pose of the body in the odometry frame; time, s.
   void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
@@ -48,12 +37,9 @@ class AirMap {
   };
   static constexpr std::uint8_t kSure = 2;  ///< A single return may be noise.
 
-  Cell& cell(std::int32_t i, std::int32_t j) {
-    return grid_[static_cast<std::size_t>((j & (kSide - 1)) * kSide + (i & (kSide - 1)))];
-  }
+  Cell& cell(std::int32_t i, std::int32_t j) { return grid_[(j & (kSide - 1)) * kSide + (i & (kSide - 1))]; }
 
   Platform platform_;
-  AirMapParams params_;
   Footprint body_;
   std::vector<Cell> grid_;
   std::vector<Eigen::Vector2f> cells_{};

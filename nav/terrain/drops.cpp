@@ -7,6 +7,9 @@
 namespace adit::nav {
 namespace {
 
+constexpr float kDropMemory = 20.0f;  ///< Lifetime of a drop that could be seen and is not, s.
+/// Consecutive scans without an expected return of the ground before it counts as a hole.
+constexpr int kMissingReturns = 3;
 /// Evidence of one ray below the ground: one of three may be a reflection, log-odds.
 constexpr float kRay = 0.75f;
 constexpr float kBelieved = 2.2f;             ///< The log-odds of Drops::kBlocks.
@@ -28,9 +31,8 @@ std::size_t at(int row, int column) {
 
 }  // namespace
 
-Drops::Drops(const TerrainParams& params, const Geometry& geometry, const GroundGrid& ground)
-    : params_(params),
-      geometry_(geometry),
+Drops::Drops(const Geometry& geometry, const GroundGrid& ground)
+    : geometry_(geometry),
       edge_cells_(static_cast<int>(std::ceil(geometry.half_body / GroundGrid::kCell)) + 1),
       odds_(ground.places(), 0.0f),
       rays_below_(ground.places(), 0),
@@ -52,7 +54,7 @@ void Drops::begin_scan(const GroundGrid& ground, std::span<const std::uint8_t> s
   solid_ = solid;
   now_ = now;
   farthest_ = farthest;
-  ground.entered([this](std::size_t place) { odds_[place] = 0, rays_below_[place] = 0; });
+  for (const std::size_t place : ground.entered()) odds_[place] = 0, rays_below_[place] = 0;
 }
 
 bool Drops::has_cue(int index, const GroundGrid& ground) const {
@@ -88,7 +90,7 @@ bool Drops::under_ground(const View& view, const Eigen::Vector3f& ray, float ran
     const Eigen::Vector3f p = view.sensor + r * way;
     if (!ground.inside(p.x(), p.y())) break;
     const int index = ground.window(p.x(), p.y());
-    const bool held = ground.measured(index) || solid_[static_cast<std::size_t>(index)] != 0;
+    const bool held = ground.measured(index) || solid_[index] != 0;
     if (held && p.z() < ground.height(index) - geometry_.depth / 2) under += GroundGrid::kCell;
   }
   // One cell may belong to the edge itself.
@@ -111,10 +113,9 @@ Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, 
   };
   // Distance back to the last measured ground; where rings are far apart that ground must have been measured.
   int back = 0;
-  for (bool met = false; back <= edge_cells_ && !met; ++back) {
+  for (; back <= edge_cells_; ++back) {
     const float r = range - static_cast<float>(back) * GroundGrid::kCell;
-    met = r < kNearest || (back > 0 && ground.measured(index_at(r)));
-    if (met) break;
+    if (r < kNearest || (back > 0 && ground.measured(index_at(r)))) break;
   }
   if (back > edge_cells_ && range > geometry_.sure) return Cue::none;
   if (range > geometry_.sure || (cue == Cue::ray && under_ground(view, ray, range, end * length, ground)))
@@ -135,7 +136,7 @@ void Drops::below(const View& view, const Eigen::Vector3f& point, const GroundGr
   // an obstacle may be its reflection in wet ground or glass.
   const auto solid_at = [&](float r) {
     const Eigen::Vector2f p = point.head<2>() + (r - range) / range * ray.head<2>();
-    return ground.inside(p.x(), p.y()) && solid_[static_cast<std::size_t>(ground.window(p.x(), p.y()))] != 0;
+    return ground.inside(p.x(), p.y()) && solid_[ground.window(p.x(), p.y())] != 0;
   };
   const bool under_solid = solid_at(range) || solid_at(range + GroundGrid::kCell);
   const Cue cue = !under_solid && ground.below_plane(point) > geometry_.depth ? Cue::ray : Cue::doubtful;
@@ -153,7 +154,7 @@ void Drops::turn_columns(const View& view) {
   ahead /= length;
   for (int c = 0; c < LidarRangeImage::kColumns; ++c) {
     const Eigen::Vector2f way = LidarRangeImage::direction_of(c);
-    column_[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(
+    column_[c] = static_cast<std::uint8_t>(
         LidarRangeImage::column_of({ahead.dot(way), ahead.x() * way.y() - ahead.y() * way.x()}));
   }
 }
@@ -170,7 +171,7 @@ void Drops::count_missing_returns(const View& view, const LidarRangeImage& rays,
     }
     if (count == 0) continue;
     for (int c = 0; c < LidarRangeImage::kColumns; ++c) {
-      const int own = column_[static_cast<std::size_t>(c)];
+      const int own = column_[c];
       std::uint8_t& missing = missing_returns_[at(row, c)];
       if (!rays.empty_at(row, own)) {
         missing = 0;
@@ -184,8 +185,8 @@ void Drops::count_missing_returns(const View& view, const LidarRangeImage& rays,
         missing = 0;
         continue;
       }
-      if (missing < params_.missing_returns) ++missing;
-      if (missing < params_.missing_returns) continue;
+      if (missing < kMissingReturns) ++missing;
+      if (missing < kMissingReturns) continue;
       const Eigen::Vector2f way = LidarRangeImage::direction_of(own);
       const Eigen::Vector3f ray =
           view.turn * Eigen::Vector3f(way.x(), way.y(), LidarRangeImage::tangent_of(row));
@@ -214,7 +215,7 @@ void Drops::finish(const View& view, const LidarRangeImage& rays, const GroundGr
     const Eigen::Vector3f seen = view.seen(middle.x(), middle.y(), ground.height(index));
     if (seen.z() < rays.lowest() * seen.head<2>().norm())
       stamp_[place] = now_;  // In the blind spot.
-    else if (now_ - stamp_[place] > params_.drop_memory)
+    else if (now_ - stamp_[place] > kDropMemory)
       odds = 0, rays_below_[place] = 0;
     if (odds >= kMinReported)
       cells_.push_back({static_cast<std::uint32_t>(index), 1 / (1 + std::exp(-odds))});

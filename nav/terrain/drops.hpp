@@ -7,7 +7,6 @@
 
 #include "nav/terrain/ground_grid.hpp"
 #include "nav/terrain/lidar_range_image.hpp"
-#include "nav/terrain/terrain_params.hpp"
 #include "nav/terrain/view.hpp"
 
 namespace adit::nav {
@@ -36,7 +35,7 @@ class Drops {
     float sure;       ///< Range up to which a ray that passes the ground's height shows an edge, m.
     float half_body;  ///< Half the body's length, m; shorter gaps are passable.
   };
-  Drops(const TerrainParams& params, const Geometry& geometry, const GroundGrid& ground);
+  Drops(const Geometry& geometry, const GroundGrid& ground);
   void clear();
 
   /// Starts a scan. `solid`: marks the cells of the ground's window with an obstacle; valid until finish().
@@ -67,7 +66,6 @@ class Drops {
   /// Computes which lidar column points in each direction of the map.
   void turn_columns(const View& view);
 
-  TerrainParams params_;
   Geometry geometry_;
   int edge_cells_;  ///< Maximum number of cells between a ray's place and the last measured ground.
   float farthest_{};
@@ -78,8 +76,7 @@ class Drops {
   /// Consecutive missing returns per direction, by the lidar's row and the map's column.
   std::vector<std::uint8_t> missing_returns_;
   std::vector<std::uint8_t> returned_;  ///< Lidar directions that have had a return.
-  std::array<std::uint8_t, LidarRangeImage::kColumns>
-      column_{};  ///< The lidar's column for each column of the map.
+  std::array<std::uint8_t, LidarRangeImage::kColumns> column_{};  ///< The lidar's, for each of the map.
   std::vector<Cell> cells_{};
   bool any_{false};
   float now_{};

@@ -85,16 +85,14 @@ class GroundGrid {
   bool grown() const { return grown_; }
 
   /// Height of the ground at (x, y), m; outside of the window the height at its edge.
-  float at(float x, float y) const { return ground_[static_cast<std::size_t>(window(x, y))]; }
+  float at(float x, float y) const { return ground_[window(x, y)]; }
   /// Support height: at(), but no higher than the slope permits from the preceding cells. The robot climbs
   /// from there.
-  float before(float x, float y) const { return floor_[static_cast<std::size_t>(window(x, y))]; }
+  float before(float x, float y) const { return floor_[window(x, y)]; }
   /// A return that is lower than at() by more than this shows that the ground is missing, m.
-  float drop_limit(int index) const {
-    return limit_[static_cast<std::size_t>(gap_[static_cast<std::size_t>(index)])];
-  }
+  float drop_limit(int index) const { return limit_[gap_[static_cast<std::size_t>(index)]]; }
   /// Whether the ground in the cell of (x, y) was measured and not inherited.
-  bool measured(float x, float y) const { return gap_[static_cast<std::size_t>(window(x, y))] == 0; }
+  bool measured(float x, float y) const { return gap_[window(x, y)] == 0; }
 
   /// Number of cells of the window along each axis; the robot is in the middle.
   int side() const { return side_; }
@@ -102,11 +100,11 @@ class GroundGrid {
   /// Number of cells of the torus that place() indexes.
   std::size_t places() const { return low_.size(); }
   // By index in the window: side() columns along y for each step along x.
-  float before(int index) const { return floor_[static_cast<std::size_t>(index)]; }
-  float height(int index) const { return ground_[static_cast<std::size_t>(index)]; }
-  bool measured(int index) const { return gap_[static_cast<std::size_t>(index)] == 0; }
+  float before(int index) const { return floor_[index]; }
+  float height(int index) const { return ground_[index]; }
+  bool measured(int index) const { return gap_[index] == 0; }
   /// Whether the newest scan measured it.
-  bool fresh(int index) const { return fresh_[static_cast<std::size_t>(index)] != 0; }
+  bool fresh(int index) const { return fresh_[index] != 0; }
   const std::uint8_t* gaps() const { return gap_.data(); }
   const float* heights() const { return ground_.data(); }
   /// The nearest cell of the window.
@@ -126,11 +124,8 @@ class GroundGrid {
   std::size_t place(int index) const {
     return slot(centre_x_ + index / side_ - half_, centre_y_ + index % side_ - half_);
   }
-  /// Calls `forget(place)` for each cell that entered the window with this scan.
-  template <class Forget>
-  void entered(const Forget& forget) const {
-    for (const std::size_t place : entered_) forget(place);
-  }
+  /// Places of the cells that entered the window with this scan.
+  const std::vector<std::size_t>& entered() const { return entered_; }
 
  private:
   /// A cell of the window and its two inner neighbours.

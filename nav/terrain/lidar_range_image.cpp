@@ -6,8 +6,6 @@
 
 namespace adit::nav {
 
-LidarRangeImage::LidarRangeImage() : bins_(kColumns * kRows, kEmpty) {}
-
 void LidarRangeImage::clear() {
   std::fill(bins_.begin(), bins_.end(), kEmpty);
   lowest_ = 0.0f;
@@ -22,7 +20,7 @@ bool LidarRangeImage::saw_through(const Eigen::Vector3f& low, const Eigen::Vecto
   const int last = std::min(kRows - 1, row_of(high.z() / range));
   const auto need = static_cast<std::uint16_t>(std::min(60000.0f, (range + beyond) * 100.0f));
   for (int row = first; row <= last; ++row) {
-    const std::uint16_t bin = bins_[static_cast<std::size_t>(row * kColumns + column)];
+    const std::uint16_t bin = bins_[row * kColumns + column];
     if (bin != kEmpty && bin > need) return true;
   }
   return false;

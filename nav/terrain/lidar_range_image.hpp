@@ -16,7 +16,6 @@ class LidarRangeImage {
   static constexpr int kColumns = 256;
   static constexpr int kRows = 100;
 
-  LidarRangeImage();
   void clear();
 
   /// Adds a return, in the lidar's frame.
@@ -24,7 +23,7 @@ class LidarRangeImage {
     if (ray.tangent < lowest_) lowest_ = ray.tangent;
     const int row = row_of(ray.tangent);
     if (row < 0 || row >= kRows) return;
-    std::uint16_t& bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(ray.bearing))];
+    std::uint16_t& bin = bins_[row * kColumns + column_of(ray.bearing)];
     const float centimetres = ray.range * 100.0f;
     const auto value = centimetres < 65000.0f ? static_cast<std::uint16_t>(centimetres) : kFar;
     if (value < bin) bin = value;
@@ -37,7 +36,7 @@ class LidarRangeImage {
   /// Tangent of the lowest ray of this scan: the lidar sees nothing below it.
   float lowest() const { return lowest_; }
   bool empty_at(int row, int column) const {
-    return bins_[static_cast<std::size_t>(row * kColumns + (column & (kColumns - 1)))] == kEmpty;
+    return bins_[row * kColumns + (column & (kColumns - 1))] == kEmpty;
   }
   /// Tangent at the centre of a row.
   static float tangent_of(int row) { return (static_cast<float>(row) - 50.0f) * 0.02f; }
@@ -56,7 +55,7 @@ class LidarRangeImage {
     return static_cast<int>(bearing * (kColumns / 4) + kColumns) & (kColumns - 1);
   }
 
-  std::vector<std::uint16_t> bins_;
+  std::vector<std::uint16_t> bins_ = std::vector<std::uint16_t>(kColumns * kRows, kEmpty);
   float lowest_{};
 };
 

@@ -7,6 +7,10 @@
 namespace adit::nav {
 namespace {
 
+constexpr float kHiddenMemory = 4.0f;  ///< Lifetime of a hidden obstacle, s.
+constexpr int kFreeHits = 3;           ///< Consecutive scans that saw through a cell before it is free.
+/// Within this distance of the lidar obstacles stay until rays pass through them, m.
+constexpr double kBlindRange = 0.6;
 constexpr int kMany = 8;       ///< A surface has this many times as many hits as the noise before it.
 constexpr int kMeanOver = 32;  ///< Window of the mean, returns: older ones fade, because odometry drifts.
 constexpr double kForgetBeyond = 0.3;  ///< Distance beyond the range at which cells are removed, m.
@@ -15,9 +19,8 @@ constexpr float kInside = 0.05f;       ///< Depth inside the footprint, m.
 
 }  // namespace
 
-ObstacleCells::ObstacleCells(const Footprint& body, const TerrainParams& params)
-    : body_(body), params_(params), bits_(8) {
-  const double reach = (params.range + kForgetBeyond) / double{kCell};
+ObstacleCells::ObstacleCells(const Footprint& body, double range) : body_(body), range_(range), bits_(8) {
+  const double reach = (range + kForgetBeyond) / double{kCell};
   while ((1 << bits_) < 2 * reach) ++bits_;
   mask_ = (1 << bits_) - 1;
   max_cells_ = std::min(kMaxCells, static_cast<std::size_t>(4 * reach * reach));
@@ -100,21 +103,20 @@ bool ObstacleCells::stays(Entry& entry, const View& view, const LidarRangeImage&
                           std::span<const Seen> more, float step, bool passable) const {
   const float dx = entry.x() - view.sensor.x(), dy = entry.y() - view.sensor.y();
   const float range = std::sqrt(dx * dx + dy * dy);
-  const auto memory = static_cast<float>(params_.memory);
   if (entry.scan == scan_) {
     if (entry.under > entry.hits && entry.climb <= step + kNoise) return false;
     entry.free_hits = 0;
-    if (stray(entry, dx, dy, range)) return entry.solid && now_ - entry.stamp <= memory;
+    if (stray(entry, dx, dy, range)) return entry.solid && now_ - entry.stamp <= kHiddenMemory;
     entry.solid = true;
     entry.stamp = now_;
     return true;
   }
-  if (range > params_.range + kForgetBeyond + view.lidar.head<2>().norm()) return false;
+  if (range > range_ + kForgetBeyond + view.lidar.head<2>().norm()) return false;
   const Eigen::Vector3f low = view.seen(entry.x(), entry.y(), entry.z_low);
   const Eigen::Vector3f high = low + view.up(entry.z_high - entry.z_low);
   // The robot itself is here, so there is no obstacle.
   if (body_.depth(low.x() + view.lidar.x(), low.y() + view.lidar.y()) >= kInside) return false;
-  if (passable && ++entry.free_hits >= params_.free_hits) return false;
+  if (passable && ++entry.free_hits >= kFreeHits) return false;
   const bool through = std::any_of(more.begin(), more.end(), [&](const Seen& seen) {
     const Eigen::Vector3f foot = seen.view.seen(entry.x(), entry.y(), entry.z_low);
     return seen.rays.saw_through(foot, foot + seen.view.up(entry.z_high - entry.z_low), 3.0f * kCell);
@@ -124,12 +126,12 @@ bool ObstacleCells::stays(Entry& entry, const View& view, const LidarRangeImage&
     return true;
   }
   if (through || rays.saw_through(low, high, 3.0f * kCell)) {
-    if (++entry.free_hits >= params_.free_hits) return false;
+    if (++entry.free_hits >= kFreeHits) return false;
   } else if (!passable) {
     entry.free_hits = 0;
   }
   // Closer than the lidar's minimum range an obstacle is not seen any more, and stays.
-  return range < params_.blind_range || now_ - entry.stamp <= memory;
+  return range < kBlindRange || now_ - entry.stamp <= kHiddenMemory;
 }
 
 }  // namespace adit::nav

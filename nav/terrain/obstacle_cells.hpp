@@ -7,15 +7,14 @@
 #include "nav/geometry/footprint.hpp"
 #include "nav/terrain/ground_grid.hpp"
 #include "nav/terrain/lidar_range_image.hpp"
-#include "nav/terrain/terrain_params.hpp"
 #include "nav/terrain/view.hpp"
 
 namespace adit::nav {
 
 /// Obstacle map of 5 cm cells. A cell is removed when rays passed through it in several scans (so a robot
 /// that moved on leaves no trace), when the ground there turns out to be passable, when it was hidden for
-/// `memory`, or when the robot leaves it behind. A cell below the lowest ray (the blind spot of a spinning
-/// lidar) stays as long as it is near.
+/// 4 s, or when the robot leaves it behind. A cell below the lowest ray (the blind spot of a
+/// spinning lidar) stays as long as it is near.
 class ObstacleCells {
  public:
   static constexpr float kCell = 0.05f;              ///< m
@@ -37,7 +36,8 @@ class ObstacleCells {
     float y() const { return (static_cast<float>(iy) + 0.5f) * kCell; }
   };
 
-  ObstacleCells(const Footprint& body, const TerrainParams& params);
+  /// `range`: radius of the map around the robot, m.
+  ObstacleCells(const Footprint& body, double range);
   void clear();
 
   void begin_scan(float now) {
@@ -72,7 +72,7 @@ class ObstacleCells {
   bool stray(const Entry& entry, float dx, float dy, float range) const;
 
   Footprint body_;
-  TerrainParams params_;
+  double range_;                      ///< m
   int bits_, mask_;                   ///< Of a torus more than twice as wide as the range.
   std::size_t max_cells_;             ///< Every cell within range fits, up to kMaxCells.
   std::vector<std::uint32_t> slots_;  ///< Index into entries_ plus one, or 0.

@@ -2,22 +2,16 @@
 #include "nav/terrain/plane_fit.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 namespace adit::nav {
-namespace {
-
-constexpr int kIterations = 5;
-constexpr int kLattice = 6;  ///< Gradients of the lattice to each side of the prior's.
-/// Neighbouring cells share errors: this many of them count as one measurement.
-constexpr float kDecorrelated = 4.0f;
-
-}  // namespace
 
 PlaneFit fit_plane(std::span<const Eigen::Vector3f> samples, const PlanePrior& prior,
                    const Eigen::Vector2f& start, float noise, float first, float last) {
+  constexpr int kIterations = 5;
+  // Neighbouring cells share errors: this many of them count as one measurement.
+  constexpr float kDecorrelated = 4.0f;
   const float w_height = 1.0f / (prior.sigma_height * prior.sigma_height);
   const float w_gradient = 1.0f / (prior.sigma_gradient * prior.sigma_gradient);
   const float w_sample = 1.0f / (noise * noise * kDecorrelated);
@@ -69,6 +63,7 @@ PlaneFit fit_plane(std::span<const Eigen::Vector3f> samples, const PlanePrior& p
 
 Eigen::Vector2f search_gradient(std::span<const Eigen::Vector3f> samples, const PlanePrior& prior,
                                 float tolerance, float reach) {
+  constexpr int kLattice = 6;                     // Gradients of the lattice to each side of the prior's.
   const float between = 0.5f * reach / kLattice;  // From a true gradient to the nearest one of the lattice.
   Eigen::Vector2f best = prior.gradient;
   float most = -1e9f;

@@ -54,7 +54,7 @@ void Surface::add_rows(const GroundGrid& ground, int i) {
   const float level = ground.height(static_cast<int>(ground.cells() / 2));
   for (int di = -kReach; di <= kReach; ++di) {
     const float x = static_cast<float>(di) * kCell;
-    const float* w = &weight_[static_cast<std::size_t>((i + di) * side_)];
+    const float* w = &weight_[(i + di) * side_];
     const float* h = ground.heights() + (i + di) * side_;
     for (std::size_t j = 0; j < static_cast<std::size_t>(side_); ++j) {
       const float wx = w[j] * x, z = h[j] - level, wz = w[j] * z;
@@ -72,8 +72,7 @@ Surface::Step Surface::step_at(const GroundGrid& ground, int middle, float gx, f
   constexpr float kRun = 2 * kCell, kShare = 1 - kRun * 1.5f / ((2 * kReach + 1) * kCell);
   Step step;
   const auto edge = [&](int before, int after, float gradient) {
-    if (weight_[static_cast<std::size_t>(before)] == 0 || weight_[static_cast<std::size_t>(after)] == 0)
-      return;
+    if (weight_[before] == 0 || weight_[after] == 0) return;
     const float rise = ground.height(after) - ground.height(before);
     const float height = std::min(std::fabs(rise - kRun * gradient) / kShare, std::fabs(rise));
     if (height > step.height) step = {height, rise > 0 ? after : before};
@@ -85,7 +84,7 @@ Surface::Step Surface::step_at(const GroundGrid& ground, int middle, float gx, f
 
 void Surface::follow_step(const GroundGrid& ground, int i, int j, float gx, float gy) {
   const auto add = [&](int cell) {
-    std::uint8_t& followed = followed_[static_cast<std::size_t>(cell)];
+    std::uint8_t& followed = followed_[cell];
     if (!followed) places_.push_back({static_cast<std::uint32_t>(cell), Layer::step, 1.0f});
     followed = 1;
   };
@@ -96,8 +95,8 @@ void Surface::follow_step(const GroundGrid& ground, int i, int j, float gx, floa
       if (step.height <= params_.blocking_step) continue;
       add(cell);
       // A robot above the step touches nothing in the upper cell: the step begins where the ground ends.
-      const bool high = weight_[static_cast<std::size_t>(cell)] != 0 &&
-                        ground.height(step.above) - ground.height(cell) < step.height / 2;
+      const bool high =
+          weight_[cell] != 0 && ground.height(step.above) - ground.height(cell) < step.height / 2;
       if (!high) add(step.above);
     }
 }

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "core/config/platform.hpp"
 #include "nav/terrain/ground_grid.hpp"
 #include "nav/terrain/terrain_cell.hpp"
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "nav/terrain/riser.hpp"
-
 namespace adit::nav {
 namespace {
 
@@ -35,9 +33,10 @@ double sure_range(const Platform& platform) {
   return std::min(std::sqrt(std::max(0.0, gap * h / ring_angle(platform) - h * h)), h / kBuiltRamp);
 }
 
-GroundParams ground_params(const Platform& platform, const TerrainParams& params) {
+GroundParams ground_params(const Platform& platform, double range) {
   const auto limits = Traversability::of(platform);
-  const double rise = platform.stairs ? limits.obstacle + kRiser : std::max(0.03, limits.step);
+  const double rise =
+      platform.stairs ? limits.obstacle + Traversability::kRiser : std::max(0.03, limits.step);
   GroundParams ground;
   ground.slope = static_cast<float>(limits.slope);
   ground.rise = static_cast<float>(std::max(rise, limits.slope * double{GroundGrid::kCell} + 0.02));
@@ -46,8 +45,7 @@ GroundParams ground_params(const Platform& platform, const TerrainParams& params
   ground.sigma_tilt = kSigmaTilt;
   ground.rings = static_cast<float>(ring_angle(platform));
   ground.sure = static_cast<float>(sure_range(platform));
-  ground.range = static_cast<float>(params.range);
-  ground.memory = static_cast<float>(params.ground_memory);
+  ground.range = static_cast<float>(range);
   return ground;
 }
 
@@ -65,15 +63,14 @@ SurfaceParams surface_params(const Platform& platform) {
 
 }  // namespace
 
-TerrainMap::TerrainMap(const Platform& platform, const TerrainParams& params)
+TerrainMap::TerrainMap(const Platform& platform, double range)
     : platform_(platform),
-      params_(params),
+      range_(range),
       limits_(Traversability::of(platform)),
       body_(platform),
-      ground_(ground_params(platform, params)),
-      obstacles_(body_, params),
-      drops_(params,
-             {static_cast<float>(limits_.drop), static_cast<float>(sure_range(platform)),
+      ground_(ground_params(platform, range)),
+      obstacles_(body_, range),
+      drops_({static_cast<float>(limits_.drop), static_cast<float>(sure_range(platform)),
               static_cast<float>(platform.length / 2)},
              ground_),
       surface_(surface_params(platform), ground_.side()),
@@ -177,14 +174,14 @@ void TerrainMap::sort_in(const ScanPoints& scan, const View& view) {
 
 void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& sensor, bool deep,
                          LidarRangeImage& rays, const View& view) {
-  const auto range2 = static_cast<float>(params_.range * params_.range);
-  const auto min2 = static_cast<float>(params_.min_range * params_.min_range);
+  const auto range2 = static_cast<float>(range_ * range_);
+  const auto min2 = static_cast<float>(kMinRange * kMinRange);
   const auto reach2 = static_cast<float>(std::pow(body_.radius(), 2));
   // Rays that cross the plane of the ground within range and end below it.
   const Eigen::Vector2f rise = ground_.grown() ? ground_.plane().gradient : view.tilt();
   const Eigen::Vector3f up = view.turn.transpose() * Eigen::Vector3f(-rise.x(), -rise.y(), 1.0f);
   const float above = up.dot(sensor);  // Of the lidar over that plane.
-  const auto range = static_cast<float>(params_.range);
+  const auto range = static_cast<float>(range_);
   const Eigen::Matrix3f straight = Eigen::Matrix3f::Identity();
   for (std::size_t begin = 0; begin < points.size(); begin += block_.count()) {
     block_.take(points.subspan(begin), sensor, straight);
@@ -230,7 +227,7 @@ void TerrainMap::mark_obstacles(const View& view) {
   obstacles_.keep(view, rays_, more_, ground_, step);
   std::fill(solid_.begin(), solid_.end(), std::uint8_t{0});
   for (const auto& e : obstacles_.entries())
-    if (e.again) solid_[static_cast<std::size_t>(ground_.window(e.x(), e.y()))] = 1;
+    if (e.again) solid_[ground_.window(e.x(), e.y())] = 1;
 }
 
 bool TerrainMap::is_below(const Eigen::Vector3f& p) const {
@@ -251,7 +248,7 @@ void TerrainMap::write_drops() {
   const int side = ground_.side();
   std::fill(drop_.begin(), drop_.end(), std::uint8_t{0});
   const auto write = [this](int index) {
-    if (std::exchange(drop_[static_cast<std::size_t>(index)], std::uint8_t{1})) return;
+    if (std::exchange(drop_[index], std::uint8_t{1})) return;
     const Eigen::Vector2f at = ground_.middle(index);
     cells_.push_back({at.x(), at.y(), 1.0f, 0.0f, Layer::drop});
   };

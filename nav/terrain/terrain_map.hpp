@@ -23,9 +23,12 @@ class TerrainMap {
   /// Class of a ground cell for the platform.
   enum class Kind : std::uint8_t { unknown, ground, step, slope, obstacle, drop };
 
-  explicit TerrainMap(const Platform& platform, const TerrainParams& params = {});
+  static constexpr double kMinRange = 0.05;  ///< Shorter ranges are no returns, m.
 
-  /// Takes one scan; points are not finite, or within min_range of their lidar, where there was no return.
+  /// `range`: radius of the map around the robot, m, [1, 20].
+  explicit TerrainMap(const Platform& platform, double range = 4.5);
+
+  /// Takes one scan; points are not finite, or within kMinRange of their lidar, where there was no return.
   /// `body`: base_link, which is on the ground, in the odometry frame at the scan's time. `stamp_s`: that
   /// time, s, not decreasing.
   void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
@@ -42,8 +45,6 @@ class TerrainMap {
   /// Error of the body's attitude: additional rise of the map's ground per metre along x and y: see
   /// GroundGrid.
   const Eigen::Vector2f& tilt_error() const { return tilt_error_; }
-  /// Gradient of the ground around the robot, per metre along x and y, independent of the body's attitude.
-  const Eigen::Vector2f& ground_gradient() const { return ground_.plane().gradient; }
   /// Forgets everything, for example after a jump of the odometry.
   void clear();
 
@@ -61,7 +62,7 @@ class TerrainMap {
   void write_cells();
 
   Platform platform_;
-  TerrainParams params_;
+  double range_;  ///< m
   Traversability limits_;
   Footprint body_;
   GroundGrid ground_;

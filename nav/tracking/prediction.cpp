@@ -47,10 +47,7 @@ void predict(std::span<const Mover> movers, double age, const Pose2& pose, doubl
              const Platform& platform, std::vector<ObstaclePoint>& out, const PredictionParams& params) {
   const Footprint body = Footprint(platform).grown(kOwn, kOwn);
   const double around = body.radius() + params.slack;
-  const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
-  const auto local = [c, s](const Eigen::Vector2f& d) {
-    return Eigen::Vector2f(c * d.x() + s * d.y(), c * d.y() - s * d.x());
-  };
+  const auto local = [into = IntoPose(pose)](const Eigen::Vector2f& d) { return into.turn(d.x(), d.y()); };
   const auto add = [&](const Eigen::Vector2f& at, float cost) {
     if (out.size() < out.capacity() && body.depth(at.x(), at.y()) <= 0) out.push_back({at.x(), at.y(), cost});
   };
@@ -101,7 +98,7 @@ double speed_beside(std::span<const Mover> movers, double age, const Plan& plan,
     const double before = 2 * braking * spacing * static_cast<double>(i);
     if (top * top <= before) break;
     const Pose2& at = path[i];
-    const auto c = static_cast<float>(std::cos(at.yaw)), s = static_cast<float>(std::sin(at.yaw));
+    const IntoPose into(at);
     double own = top;
     const auto later = static_cast<float>(age + spacing * static_cast<double>(i) / platform.max_speed);
     for (const Mover& mover : movers) {
@@ -109,7 +106,7 @@ double speed_beside(std::span<const Mover> movers, double age, const Plan& plan,
       Eigen::Vector2f nearest(1, 0);
       for (const Eigen::Vector2f& p : mover.surface()) {
         const Eigen::Vector2f d = p + later * mover.velocity - at.position().cast<float>();
-        const float off = -body.depth(c * d.x() + s * d.y(), c * d.y() - s * d.x());
+        const float off = -body.depth(into.turn(d.x(), d.y()));
         if (off >= apart) continue;
         apart = off;
         nearest = d;

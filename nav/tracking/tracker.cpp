@@ -9,24 +9,35 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kNearest = 0.1f;     // Nearer returns belong to the robot, m from the lidar.
-constexpr float kFarthest = 1e3f;    // m
-constexpr float kSteepest = 1e2f;    // Maximum tangent of a ray's elevation.
-constexpr double kMinPeriod = 0.08;  // Minimum time between the stored images, s.
-constexpr double kBreak = 1.0;       // A longer pause between scans resets the tracker, s.
-constexpr int kGapColumns = 2;       // Maximum number of columns without a return within one object.
-constexpr float kStep = 0.45f;       // Maximum distance between neighbouring columns of one object, m.
-constexpr int kMinColumns = 2;       // Minimum number of columns of an observation.
-constexpr int kConfirmed = 3;        // Observations that confirm a mover; one less if it moved before.
-constexpr float kSlowing = 0.5f;     // Fraction of the velocity left after each scan without an observation.
-constexpr double kGate = 0.5;        // Association gate, m: a farther observation belongs to another object.
-constexpr double kFirstSigma = 1.2;  // Standard deviation of an unknown velocity, m/s.
-constexpr double kLostSigma = 0.4;   // Standard deviation of the position of a stationary object, m.
+constexpr double kTracked = 8.0;        // Movers are tracked up to this distance from the lidar, m.
+constexpr double kReferenceAge = 0.45;  // The scan is compared with the free space of one this much older, s.
+// Least age of a second reference, of half of kReferenceAge, for movers that turn about, s.
+constexpr double kYoungestAge = 0.2;
+constexpr double kPassed = 0.15;  // A ray must pass a place by this much to show that it was free, m.
+// Least height of a mover above the ground and the platform's step, m.
+constexpr double kLowestMover = 0.15;
+constexpr double kBodyMargin = 0.05;  // Returns within this distance of the footprint belong to the robot, m.
+constexpr double kLargest = 1.2;      // Larger objects are split, m.
+constexpr double kSlowest = 0.3;      // Slower objects count as stationary, m/s.
+constexpr double kCentreNoise = 0.08;  // Standard deviation of an observed centre, m.
+constexpr double kAgility = 2.0;       // Standard deviation of a mover's acceleration, m/s2.
+constexpr double kLost = 0.35;  // A track without an observation for longer counts as stationary or gone, s.
+constexpr double kMoverMemory = 4.0;  // A mover that stopped may move again for this long, s.
+constexpr float kNearest = 0.1f;      // Nearer returns belong to the robot, m from the lidar.
+constexpr float kFarthest = 1e3f;     // m
+constexpr float kSteepest = 1e2f;     // Maximum tangent of a ray's elevation.
+constexpr double kMinPeriod = 0.08;   // Minimum time between the stored images, s.
+constexpr double kBreak = 1.0;        // A longer pause between scans resets the tracker, s.
+constexpr int kGapColumns = 2;        // Maximum number of columns without a return within one object.
+constexpr float kStep = 0.45f;        // Maximum distance between neighbouring columns of one object, m.
+constexpr int kMinColumns = 2;        // Minimum number of columns of an observation.
+constexpr int kConfirmed = 3;         // Observations that confirm a mover; one less if it moved before.
+constexpr float kSlowing = 0.5f;      // Fraction of the velocity left after each scan without an observation.
+constexpr double kGate = 0.5;         // Association gate, m: a farther observation belongs to another object.
+constexpr double kFirstSigma = 1.2;   // Standard deviation of an unknown velocity, m/s.
+constexpr double kLostSigma = 0.4;    // Standard deviation of the position of a stationary object, m.
 
 }  // namespace
-
-Tracker::Tracker(const Platform& platform, const TrackerParams& params)
-    : platform_(platform), params_(params), images_(kImages) {}
 
 void Tracker::clear() {
   for (Image& image : images_) image.stamp_s = -1e9;
@@ -38,7 +49,7 @@ const Tracker::Image* Tracker::reference(double stamp_s, double wanted) const {
   const Image* best = nullptr;
   for (const Image& image : images_) {
     const double age = stamp_s - image.stamp_s;
-    if (age < params_.youngest || age > 2 * params_.age) continue;
+    if (age < kYoungestAge || age > 2 * kReferenceAge) continue;
     const bool enough = age >= wanted, has = best && stamp_s - best->stamp_s >= wanted;
     if (!best || (enough && !has) || (enough == has && (image.stamp_s > best->stamp_s) == enough))
       best = &image;
@@ -50,7 +61,7 @@ void Tracker::look(const ScanPoints& scan, const Pose3& body, double stamp_s) {
   if (stamp_s - stamp_s_ > kBreak || jumped(body.planar(), stamp_s - stamp_s_)) clear();
   body_ = body.planar();
   const double dt = std::min(stamp_s - stamp_s_, kBreak);
-  const Image *before = reference(stamp_s, params_.age), *lately = reference(stamp_s, params_.age / 2);
+  const Image *before = reference(stamp_s, kReferenceAge), *lately = reference(stamp_s, kReferenceAge / 2);
   Image& now = images_[next_];
   newest_ = next_;
   const std::size_t last = (next_ + kImages - 1) % kImages;
@@ -86,7 +97,7 @@ void Tracker::take_in(const ScanPoints& scan, const Pose3& body, Image& now) {
       // Written so that values that are not finite fail.
       if (!(ray.range > kNearest && ray.range < kFarthest && std::fabs(ray.tangent) < kSteepest)) continue;
       const int bin = now.seen.add(ray);
-      if (bin >= 0) nearest_[static_cast<std::size_t>(bin)] = static_cast<std::uint32_t>(first + n);
+      if (bin >= 0) nearest_[bin] = static_cast<std::uint32_t>(first + n);
     }
   }
 }
@@ -97,10 +108,10 @@ void Tracker::compare(const ScanPoints& scan, const Pose3& body, const Image* be
   const Eigen::Vector3f lidar = scan.origin(platform_.lidar_origin()).cast<float>();
   const auto points = scan.first();
   columns_.fill({});
-  const Footprint own = Footprint(platform_).grown(params_.body_margin, params_.body_margin);
-  const auto low = static_cast<float>(platform_.step + params_.lowest);
+  const Footprint own = Footprint(platform_).grown(kBodyMargin, kBodyMargin);
+  const auto low = static_cast<float>(platform_.step + kLowestMover);
   const auto high = static_cast<float>(std::max(platform_.height, platform_.lidar_height) + 0.5);
-  const auto reach = static_cast<float>(params_.reach), beyond = static_cast<float>(params_.beyond);
+  const auto reach = static_cast<float>(kTracked), beyond = static_cast<float>(kPassed);
   const auto radius2 = static_cast<float>(own.radius() * own.radius());
   const auto was_free = [beyond](const Image* image, const Eigen::Vector3f& at) {
     if (!image) return false;
@@ -110,13 +121,13 @@ void Tracker::compare(const ScanPoints& scan, const Pose3& body, const Image* be
   };
   for (int bin = 0; bin < UprightRangeImage::kBins; ++bin) {
     if (!now.seen.filled(bin)) continue;
-    const Eigen::Vector3f& p = points[nearest_[static_cast<std::size_t>(bin)]];
+    const Eigen::Vector3f& p = points[nearest_[bin]];
     if (p.z() < low || p.z() > high) continue;
     const Eigen::Vector3f d = turn * (p - lidar), at = now.sensor + d;
     const float range = std::sqrt(d.x() * d.x() + d.y() * d.y());
     if (range > reach || (!was_free(before, at) && !was_free(lately, at))) continue;
     if (p.x() * p.x() + p.y() * p.y() < radius2 && own.depth(p.x(), p.y()) > 0) continue;
-    Column& column = columns_[static_cast<std::size_t>(bin % UprightRangeImage::kColumns)];
+    Column& column = columns_[bin % UprightRangeImage::kColumns];
     if (column.returns++ > 0 && column.range <= range) continue;
     column.range = range;
     column.at = at.head<2>();
@@ -141,7 +152,7 @@ void Tracker::observe() {
       const auto& at = columns_[(start + last) % UprightRangeImage::kColumns].at;
       const auto& begin = columns_[(start + first) % UprightRangeImage::kColumns].at;
       const bool apart = there && ((columns_[c].at - at).norm() > kStep ||
-                                   (columns_[c].at - begin).norm() > static_cast<float>(params_.largest));
+                                   (columns_[c].at - begin).norm() > static_cast<float>(kLargest));
       if (k - last > kGapColumns + 1 || apart || k == UprightRangeImage::kColumns) {
         add_observation((start + first) % UprightRangeImage::kColumns, last - first + 1);
         first = -1;
@@ -168,7 +179,7 @@ void Tracker::add_observation(int first, int columns) {
 }
 
 void Tracker::follow(double dt) {
-  const double q = params_.agility * params_.agility;
+  const double q = kAgility * kAgility;
   const auto step = static_cast<float>(dt);
   for (std::size_t i = 0; i < track_count_; ++i) {
     Track& t = tracks_[i];
@@ -203,8 +214,8 @@ void Tracker::follow(double dt) {
     const double unseen = stamp_s_ - t.seen_s;
     // Without an observation it has probably slowed down or turned about on ground that it just left.
     if (unseen > 0) t.mover.velocity *= kSlowing;
-    if (unseen > params_.lost) {
-      if (!t.moved || unseen > params_.memory) continue;
+    if (unseen > kLost) {
+      if (!t.moved || unseen > kMoverMemory) continue;
       // It stopped or is out of sight: it stays where it was seen last until it is seen to move.
       t.mover.velocity.setZero();
       t.confirmed = 0;
@@ -221,14 +232,14 @@ void Tracker::follow(double dt) {
     Track& t = tracks_[track_count_++];
     t = {};
     t.mover.position = observations_[k].middle;
-    t.place = params_.noise * params_.noise;
+    t.place = kCentreNoise * kCentreNoise;
     t.speed = kFirstSigma * kFirstSigma;
     confirm(t, observations_[k]);
   }
 }
 
 void Tracker::confirm(Track& t, const Observation& seen) {
-  const double noise = params_.noise * params_.noise;
+  const double noise = kCentreNoise * kCentreNoise;
   const double gain = t.place / (t.place + noise), speed_gain = t.both / (t.place + noise);
   const Eigen::Vector2f off = seen.middle - t.mover.position;
   t.mover.position += static_cast<float>(gain) * off;
@@ -254,7 +265,7 @@ void Tracker::show() {
     mover.sigma_velocity = static_cast<float>(std::sqrt(std::max(0.0, t.speed)));
     const float speed = mover.velocity.norm();
     // An object that moved before needs less evidence.
-    mover.moves = t.confirmed >= kConfirmed - t.moved && speed >= static_cast<float>(params_.slowest) &&
+    mover.moves = t.confirmed >= kConfirmed - t.moved && speed >= static_cast<float>(kSlowest) &&
                   speed >= (t.moved ? 1 : 2) * mover.sigma_velocity;
     t.moved |= mover.moves;
     if (t.moved) movers_[mover_count_++] = mover;

@@ -12,25 +12,6 @@
 
 namespace adit::nav {
 
-/// Parameters of Tracker.
-struct TrackerParams {
-  double reach{8.0};  ///< Tracks movers up to this distance from the lidar, m, [1, 30].
-  double age{0.45};   ///< Compares the scan with the free space of a scan this much older, s, [0.1, 0.7].
-  /// Minimum age of a second reference, at half of `age`, for movers that turn about, s, [0.05, age].
-  double youngest{0.2};
-  double beyond{0.15};  ///< A ray must pass a place by this much to show that it was free, m, [0.05, 1].
-  double lowest{0.15};  ///< Minimum height of a mover above the ground and the platform's step, m, [0, 1].
-  /// Returns within this distance of the footprint belong to the robot, m, [0, 0.5].
-  double body_margin{0.05};
-  double largest{1.2};  ///< Larger objects are split, m, [0.3, 5].
-  double slowest{0.3};  ///< Slower objects count as stationary, m/s, [0.1, 2].
-  double noise{0.08};   ///< Standard deviation of an observed centre, m, (0, 1].
-  double agility{2.0};  ///< Standard deviation of a mover's acceleration, m/s2, (0, 10].
-  /// A track without an observation for longer counts as stationary or gone, s, [0.1, 2].
-  double lost{0.35};
-  double memory{4.0};  ///< A mover that stopped may move again for this long, s, [0, 60].
-};
-
 /// A person or robot that moves, or moved a moment ago. Odometry frame.
 struct Mover {
   static constexpr std::size_t kMax = 24;      ///< Maximum number of points.
@@ -59,7 +40,7 @@ class Tracker {
  public:
   static constexpr std::size_t kMax = 16;  ///< Maximum number of movers.
 
-  explicit Tracker(const Platform& platform, const TrackerParams& params = {});
+  explicit Tracker(const Platform& platform) : platform_(platform) {}
 
   /// Takes the newest scan: points in base_link, m; pose of the body in the odometry frame at that time;
   /// time, s, not decreasing.
@@ -117,12 +98,10 @@ class Tracker {
   void show();
 
   Platform platform_;
-  TrackerParams params_;
-  std::vector<Image> images_;
+  std::vector<Image> images_ = std::vector<Image>(kImages);
   std::size_t next_{0}, newest_{0};
   RayBlock block_{};
-  std::array<std::uint32_t, UprightRangeImage::kBins>
-      nearest_{};  ///< Index of the nearest point of each filled bin.
+  std::array<std::uint32_t, UprightRangeImage::kBins> nearest_{};  ///< Index of the nearest point by bin.
   std::array<Column, UprightRangeImage::kColumns> columns_{};
   std::array<Observation, kTracks> observations_{};
   std::size_t observation_count_{0};

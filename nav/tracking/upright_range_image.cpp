@@ -4,13 +4,9 @@
 #include <algorithm>
 
 namespace adit::nav {
-namespace {
-
-constexpr int kAround = 2;  ///< Half width of the neighbourhood, bins.
-
-}  // namespace
 
 void UprightRangeImage::spread() {
+  constexpr int kAround = 2;  // Half width of the neighbourhood, bins.
   std::array<std::uint16_t, kColumns + 2 * kAround> row{};
   for (int r = 0; r < kRows; ++r) {
     std::uint16_t* bins = bins_.data() + static_cast<std::ptrdiff_t>(r) * kColumns;

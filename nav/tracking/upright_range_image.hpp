@@ -19,6 +19,7 @@ class UprightRangeImage {
   static constexpr int kRows = 32;
   static constexpr int kBins = kColumns * kRows;
 
+  UprightRangeImage() { clear(); }
   void clear() { bins_.fill(kNothing); }
   /// Adds a return. Gives the index of its bin (kColumns bins a row) if it is the nearest one there so far,
   /// else -1.
@@ -26,7 +27,7 @@ class UprightRangeImage {
     const int row = row_of(ray.tangent);
     if (row < 0 || row >= kRows) return -1;
     const int index = row * kColumns + column_of(ray.bearing);
-    std::uint16_t& bin = bins_[static_cast<std::size_t>(index)];
+    std::uint16_t& bin = bins_[index];
     const float centimetres = ray.range * 100.0f;
     const auto value = centimetres < 65000.0f ? static_cast<std::uint16_t>(centimetres) : kFar;
     if (value >= bin) return -1;
@@ -34,7 +35,7 @@ class UprightRangeImage {
     return index;
   }
   /// Whether a bin has a return; valid before spread() only.
-  bool filled(int bin) const { return bins_[static_cast<std::size_t>(bin)] != kNothing; }
+  bool filled(int bin) const { return bins_[bin] != kNothing; }
   /// Replaces each bin by the minimum of its neighbourhood. Call it once, after the last add().
   void spread();
   /// Whether rays passed the place at the end of `ray` by at least `beyond` metres. Bins without a return
@@ -42,7 +43,7 @@ class UprightRangeImage {
   bool saw_past(const Ray& ray, float beyond) const {
     const int row = row_of(ray.tangent);
     if (row < 0 || row >= kRows) return false;
-    const std::uint16_t bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(ray.bearing))];
+    const std::uint16_t bin = bins_[row * kColumns + column_of(ray.bearing)];
     return bin != kNothing && bin > (ray.range + beyond) * 100.0f;
   }
   static int column_of(float bearing) {
@@ -55,11 +56,7 @@ class UprightRangeImage {
   static constexpr std::uint16_t kFar = 0xfffe;
   static int row_of(float tangent) { return static_cast<int>(tangent * 50.0f + 116.5f) - 100; }
 
-  std::array<std::uint16_t, kBins> bins_ = [] {
-    std::array<std::uint16_t, kBins> nothing{};
-    nothing.fill(kNothing);
-    return nothing;
-  }();
+  std::array<std::uint16_t, kBins> bins_;
 };
 
 }  // namespace adit::nav

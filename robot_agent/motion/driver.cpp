@@ -139,9 +139,8 @@ void Driver::look() {
   Endpoints& e = *endpoints_;
   const auto writers = e.io.wire.endpoints(wire::topics::kExternalCmdVel.name);
   const auto any = [&](const char* type) {
-    return std::any_of(writers.begin(), writers.end(), [&](const wire::RemoteEndpoint& endpoint) {
-      return endpoint.writes && endpoint.type == type;
-    });
+    return std::ranges::any_of(
+        writers, [&](const wire::RemoteEndpoint& each) { return each.writes && each.type == type; });
   };
   const char* const plain = wire::topics::kExternalCmdVel.type;
   const char* const stamped = wire::topics::kExternalCmdVelStamped.type;

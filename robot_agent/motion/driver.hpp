@@ -3,7 +3,6 @@
 #include <functional>
 #include <memory>
 
-#include "core/exec/executor.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/wire/participant.hpp"
 #include "robot_agent/motion/input_faults.hpp"

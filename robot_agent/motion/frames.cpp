@@ -2,7 +2,6 @@
 #include "robot_agent/motion/frames.hpp"
 
 #include <cmath>
-#include <utility>
 
 namespace adit::agent {
 namespace {
@@ -110,12 +109,6 @@ Eigen::Vector3d Frames::to_odom(const Eigen::Vector3d& in_map) const {
 Eigen::Vector3d Frames::to_map(const Eigen::Vector3d& in_odom) const {
   const Eigen::Vector2d planar = T_map_odom_ * Eigen::Vector2d(in_odom.head<2>());
   return {planar.x(), planar.y(), in_odom.z() + height_};
-}
-
-Result<Pose3> Frames::T_map_base_at(std::uint64_t stamp) const {
-  auto T_odom_base = T_odom_base_at(stamp);
-  if (!T_odom_base) return T_odom_base;
-  return Pose3::level(T_map_odom_, height_) * *T_odom_base;
 }
 
 }  // namespace adit::agent

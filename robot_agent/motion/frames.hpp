@@ -85,8 +85,6 @@ class Frames {
   Pose2 T_map_base() const { return T_map_odom_ * T_odom_base().planar(); }
   /// Height of the body in the map, m.
   double height() const { return T_odom_base().position.z() + height_; }
-  /// The pose of the body at a stamp, by the present T_map_odom. Errors: as T_odom_base_at.
-  Result<Pose3> T_map_base_at(std::uint64_t stamp) const;
   const Pose2& T_map_odom() const { return T_map_odom_; }
   /// The start pose of the robot; neither drift nor corrections change it.
   const Pose2& T_map_start() const { return T_map_start_; }

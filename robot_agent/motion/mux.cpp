@@ -16,7 +16,7 @@ void Mux::enable(std::string_view name, Time now) {
   enabled_ = next;
   if (next != kNone)
     inputs_[next].written = false;  // A motion written before the source was enabled is discarded.
-  settled_ = now + params_.settle;
+  settled_ = now + kSettle;
   pass(Stand{}, now);
 }
 
@@ -39,11 +39,6 @@ void Mux::step(Time now) {
     pass(Stand{}, now);
   else
     pass(inputs_[enabled_].motion, now);
-}
-
-const std::string& Mux::enabled() const {
-  static const std::string none{};
-  return enabled_ == kNone ? none : inputs_[enabled_].name;
 }
 
 }  // namespace adit::agent

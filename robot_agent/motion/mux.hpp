@@ -8,12 +8,6 @@
 
 namespace adit::agent {
 
-struct MuxParams {
-  /// The output stays zero for this time when the source changes: one period of the driver, so that a driver
-  /// that reads only the last command receives the zero.
-  Duration settle{50ms};
-};
-
 /// A multiplexer that passes exactly one source to navigation, the one that the behaviour tree enabled (rule
 /// 5), and zero when that source falls silent (rule 6).
 class Mux {
@@ -35,8 +29,7 @@ class Mux {
     std::size_t index_{0};
   };
 
-  explicit Mux(NavigationInput& navigation, MuxParams params = {})
-      : navigation_(navigation), params_(params) {}
+  explicit Mux(NavigationInput& navigation) : navigation_(navigation) {}
   Mux(const Mux&) = delete;
   Mux& operator=(const Mux&) = delete;
 
@@ -47,12 +40,13 @@ class Mux {
   /// Passes the last motion of the enabled source, or zero. Call it at the driver's rate.
   void step(Time now);
 
-  /// The enabled source; empty: none.
-  const std::string& enabled() const;
   /// Whether the enabled source wrote within its `max_age`.
   bool fresh(Time now) const;
 
  private:
+  /// The output stays zero for this time when the source changes: one period of the driver, so that a driver
+  /// that reads only the last command receives the zero.
+  static constexpr Duration kSettle = 50ms;
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   struct Input {
     std::string name{};
@@ -65,7 +59,6 @@ class Mux {
   void pass(const Motion& motion, Time now) { navigation_.accept(MuxKey{}, motion, now); }
 
   NavigationInput& navigation_;
-  MuxParams params_;
   std::vector<Input> inputs_{};
   std::size_t enabled_{kNone};
   Time settled_{};

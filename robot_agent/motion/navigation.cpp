@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "nav/routing/route_target.hpp"
-
 namespace adit::agent {
 namespace {
 
@@ -17,6 +15,7 @@ constexpr Duration kAnswerDeadline = 2s;  // Of planner and router; one that han
 constexpr double kBorderRange = 5.0;      // Of the areas' border that planner and monitor see, m.
 constexpr double kGoalMoved = 0.05;       // Shift of the goal by a correction of the map, m.
 constexpr double kCrawls = 0.05;          // A robot with a lower speed limit is to stand, m/s.
+constexpr double kAtHeight = 0.2;         // Greatest error of the height of a goal, m.
 constexpr double kTolerance = 0.25;       // Of the planners, m.
 constexpr double kTurned = 0.15;          // Greatest error of a heading that was asked for, rad.
 
@@ -175,20 +174,16 @@ Twist2 Navigation::along_plan(Time now) {
   return velocity;
 }
 
-double Navigation::climb() const {
-  constexpr double kThere = 0.05;  // m
+std::optional<double> Navigation::height_left() const {
   const auto* go = std::get_if<GoTo>(&motion_);
-  if (!params_.platform.flies() || !go || !std::isfinite(go->goal.z())) return 0.0;
-  const double off = go->goal.z() - frames_.height();
-  const double most = params_.platform.max_climb;
-  return std::fabs(off) < kThere ? 0.0 : std::clamp(off, -most, most);
+  if (!params_.platform.flies() || !go || !std::isfinite(go->goal.z())) return std::nullopt;
+  return go->goal.z() - frames_.height();
 }
 
-bool Navigation::at_height() const {
-  constexpr double kThere = 0.2;  // m
-  const auto* go = std::get_if<GoTo>(&motion_);
-  if (!params_.platform.flies() || !go || !std::isfinite(go->goal.z())) return true;
-  return std::fabs(go->goal.z() - frames_.height()) < kThere;
+double Navigation::climb() const {
+  constexpr double kThere = 0.05;  // m
+  const double left = height_left().value_or(0.0), most = params_.platform.max_climb;
+  return std::fabs(left) < kThere ? 0.0 : std::clamp(left, -most, most);
 }
 
 double Navigation::distance_to_goal(const Pose2& pose) const {
@@ -416,7 +411,8 @@ void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
   const auto& go = std::get<GoTo>(motion_);
   const double tolerance = go.tolerance > 0 ? go.tolerance : kTolerance;
   bool arrived = plan.arrived && drives && job.target.last && job.generation == goal_generation_ &&
-                 distance_to_goal(job.pose) < tolerance + kGoalMoved && at_height();
+                 distance_to_goal(job.pose) < tolerance + kGoalMoved &&
+                 std::fabs(height_left().value_or(0.0)) < kAtHeight;
   if (arrived && go.yaw && params_.platform.turns_on_spot()) {
     nav::Plan turn{.stamp_s = plan.stamp_s, .turn_first = true, .pose_count = 2};
     turn.poses[0] = turn.poses[1] = frames_.T_map_odom().inverse() * Pose2{go.goal.x(), go.goal.y(), *go.yaw};
@@ -439,8 +435,8 @@ bool Navigation::goal_free(const Eigen::Vector2d& place) const {
   if (!obstacles_) return true;
   const Eigen::Vector2f at = frames_.to_odom(place).cast<float>();
   const float radius = static_cast<float>(std::min(params_.platform.width, params_.platform.length) / 2);
-  return std::none_of(obstacles_->begin(), obstacles_->end(),
-                      [&](const Eigen::Vector2f& o) { return (o - at).squaredNorm() < radius * radius; });
+  return std::ranges::none_of(
+      *obstacles_, [&](const Eigen::Vector2f& o) { return (o - at).squaredNorm() < radius * radius; });
 }
 
 }  // namespace adit::agent

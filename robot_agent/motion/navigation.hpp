@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/component/component.hpp"
@@ -105,10 +104,10 @@ class Navigation : public Component, public NavigationInput {
   /// Whether areas bind the present motion.
   bool is_bound() const;
   void update_fence(Time now);
-  /// For a flying robot with a goal that has a height: the upward velocity, m/s, and whether the height is
-  /// reached.
+  /// For a flying robot with a goal that has a height: how much higher that is, m.
+  std::optional<double> height_left() const;
+  /// The upward velocity to it, m/s.
   double climb() const;
-  bool at_height() const;
   Twist2 limited(const Twist2& wanted) const;
   void send(const Twist2& velocity);
   void pass_on(const Velocity& wanted);

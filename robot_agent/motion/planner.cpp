@@ -8,8 +8,8 @@ namespace {
 
 nav::LocalNavigation make_local_navigation(const PlannerParams& params,
                                            std::shared_ptr<const nav::PlannerLibrary> library) {
-  if (params.local_planner) return nav::LocalNavigation(params.platform, {}, params.local_planner);
-  return nav::LocalNavigation(params.platform, {}, {}, std::move(library));
+  if (params.local_planner) return nav::LocalNavigation(params.platform, params.local_planner);
+  return nav::LocalNavigation(params.platform, std::move(library));
 }
 
 }  // namespace

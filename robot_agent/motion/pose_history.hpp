@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cstdint>
+#include <map>
 
 #include "core/geometry/pose.hpp"
 #include "core/result/result.hpp"
@@ -23,23 +23,14 @@ class PoseHistory {
   /// The pose at `stamp`: linear in position, spherical linear in orientation. Errors: out_of_range before
   /// the oldest sample, after the newest one, in a gap longer than kLongestGap, and for stamp 0.
   Result<Pose3> at(std::uint64_t stamp) const;
-  void clear() { size_ = 0; }
+  void clear() { poses_.clear(); }
 
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return poses_.size(); }
   /// Stamp of the newest sample; 0: there is none.
-  std::uint64_t newest() const { return size_ > 0 ? sample(size_ - 1).stamp : 0; }
+  std::uint64_t newest() const { return poses_.empty() ? 0 : poses_.rbegin()->first; }
 
  private:
-  struct HistoryPose {
-    std::uint64_t stamp{};
-    Pose3 pose{};
-  };
-  /// The `n`-th sample in the order of stamps.
-  const HistoryPose& sample(std::size_t n) const { return samples_[(first_ + n) % kCapacity]; }
-  HistoryPose& sample(std::size_t n) { return samples_[(first_ + n) % kCapacity]; }
-
-  std::array<HistoryPose, kCapacity> samples_{};
-  std::size_t first_{}, size_{};
+  std::map<std::uint64_t, Pose3> poses_{};  ///< By stamp.
 };
 
 }  // namespace adit::agent

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <optional>
 
 #include "core/time/time.hpp"
 #include "core/wire/participant.hpp"
@@ -22,7 +21,15 @@ class RivalWatch {
   explicit RivalWatch(Time started) : started_(started) {}
 
   /// Processes a velocity of another participant. Returns true if operators must be notified now.
-  bool heard(const wire::ParticipantId& writer, Time now);
+  bool heard(const wire::ParticipantId& writer, Time now) {
+    if (now - started_ < kGrace) return false;
+    if (writer != writer_ || now - since_ > kWindow) {
+      writer_ = writer;
+      since_ = now;
+      count_ = 0;
+    }
+    return ++count_ >= kSamples && reported_.pass(writer, now);
+  }
 
  private:
   Time started_;

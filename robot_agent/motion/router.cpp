@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/motion/router.hpp"
 
-#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -10,19 +9,18 @@
 namespace adit::agent {
 namespace {
 
-constexpr double kMoved = 0.1;       // m
-constexpr double kJudged = 3.0;      // m: a goal this near is in sight
+constexpr Duration kMinPeriod = 200ms;       // Between two scans that enter the map.
+constexpr Duration kMinPeriodStanding = 1s;  // The same while the robot is stationary and has no goal.
+constexpr Duration kModelled = 20ms;         // Duration of a job in rehearsal.
+constexpr double kMoved = 0.1;               // m
+constexpr double kJudged = 3.0;              // m: a goal this near is in sight
 constexpr double kRefusedFor = 3.0;  // s: the body cannot stand at a goal for so long before the robot stops
 
 }  // namespace
 
 struct Router::Maps {
-  explicit Maps(const RouterParams& params)
-      : platform(params.platform),
-        planner(params.platform, params.route),
-        route_follower(params.platform),
-        goals(params.platform),
-        explorer(params.platform) {}
+  explicit Maps(const Platform& robot)
+      : platform(robot), planner(robot), route_follower(robot), goals(robot), explorer(robot) {}
   Platform platform;
   nav::RoutePlanner planner;
   nav::RouteFollower route_follower;
@@ -49,7 +47,7 @@ struct Router::Maps {
   }
 
   void enter(std::uint32_t epoch, const RouteAreas& now) {
-    planner.set_areas(now.binding);
+    planner.map().set_areas(now.binding);
     goals.set_areas(now.all);
     areas = now.all;
     if (std::exchange(odom_epoch, epoch) == epoch) return;
@@ -60,32 +58,56 @@ struct Router::Maps {
   }
 };
 
-Router::Router(RouterParams params, Executor& strand, Log log, RouteServices& services)
+Router::Router(const Platform& platform, Executor& strand, Log log, RouteServices& services)
     : Component("router", strand, std::move(log), {.beat = 100ms}),
-      params_(std::move(params)),
       services_(services),
-      maps_(std::make_shared<Maps>(params_)) {}
+      maps_(std::make_shared<Maps>(platform)) {}
+
+template <class Query, class Answer, class Work>
+void Router::serve(Service<Query, Answer>& service, const char* name, Work work) {
+  offer(service, [this, name, work](const Query& query, const Reply<Answer>& reply) {
+    compute(
+        {.name = name, .modelled = kModelled, .lane = "maps"},
+        [query, work, maps = maps_] {
+          maps->enter(query.odom_epoch, query.areas);
+          return work(*maps, query);
+        },
+        reply);
+  });
+}
 
 Result<void> Router::on_start() {
   offer(services_.step, [this](const auto& job, const auto& reply) { step(job, reply); });
-  offer(services_.check, [this](const auto& query, const auto& reply) { check(query, reply); });
-  offer(services_.explore, [this](const auto& query, const auto& reply) { explore(query, reply); });
-  offer(services_.clear, [this](const auto& query, const auto& reply) { clear(query, reply); });
-  offer(services_.find, [this](const auto& query, const auto& reply) { find(query, reply); });
+  serve(services_.check, "goal check", [](Maps& maps, const GoalQuery& query) {
+    return maps.goals.check(maps.planner, query.from, query.to, query.replace);
+  });
+  serve(services_.explore, "exploration", [](Maps& maps, const ExploreQuery& query) {
+    if (query.begins) maps.explorer.begin();
+    nav::RouteGround ground(maps.planner, maps.platform, maps.areas, query.within);
+    return maps.explorer.step(ground, query.place, seconds(query.made.time_since_epoch()), query.blocked);
+  });
+  serve(services_.clear, "clear place", [](Maps& maps, const ClearPlaceQuery& query) {
+    set_team(maps.planner, query.team, maps.platform.width / 2);
+    return nav::find_clear_place(maps.planner, query.query);
+  });
+  serve(services_.find, "route query", [](Maps& maps, const RouteQuery& query) {
+    nav::Route route = maps.planner.plan(query.from, query.to);
+    route.goal = maps.goals.stand(maps.planner, query.to, query.from.z());
+    return route;
+  });
   return {};
 }
 
 void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::RouteStep>& reply) {
   // A stationary robot without a goal sees the same points again.
   const bool stands = !job->goal && (job->place - taken_at_).norm() < kMoved;
-  const bool takes =
-      !taken_ || job->made - *taken_ >= (stands ? params_.min_period_standing : params_.min_period);
+  const bool takes = !taken_ || job->made - *taken_ >= (stands ? kMinPeriodStanding : kMinPeriod);
   if (takes) {
     taken_ = job->made;
     taken_at_ = job->place;
   }
   compute(
-      {.name = "route step", .modelled = params_.modelled, .lane = "maps"},
+      {.name = "route step", .modelled = kModelled, .lane = "maps"},
       [job, takes, maps = maps_]() -> nav::RouteStep {
         maps->enter(job->odom_epoch, job->areas);
         const double stamp = seconds(job->made.time_since_epoch());
@@ -100,53 +122,7 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
         maps->refused_since.reset();
         return {};
       },
-      [reply](Result<nav::RouteStep> stepped) { reply(std::move(stepped)); });
-}
-
-void Router::find(const RouteQuery& query, const Reply<nav::Route>& reply) {
-  compute(
-      {.name = "route query", .modelled = params_.modelled, .lane = "maps"},
-      [query, maps = maps_] {
-        maps->enter(query.odom_epoch, query.areas);
-        nav::Route route = maps->planner.plan(query.from, query.to);
-        route.goal = maps->goals.stand(maps->planner, query.to, query.from.z());
-        return route;
-      },
-      [reply](Result<nav::Route> found) { reply(std::move(found)); });
-}
-
-void Router::check(const GoalQuery& query, const Reply<nav::GoalFinding>& reply) {
-  compute(
-      {.name = "goal check", .modelled = params_.modelled, .lane = "maps"},
-      [query, maps = maps_] {
-        maps->enter(query.odom_epoch, query.areas);
-        return maps->goals.check(maps->planner, query.from, query.to, query.replace);
-      },
-      [reply](Result<nav::GoalFinding> found) { reply(std::move(found)); });
-}
-
-void Router::explore(const ExploreQuery& query, const Reply<nav::ExploreStep>& reply) {
-  compute(
-      {.name = "exploration", .modelled = params_.modelled, .lane = "maps"},
-      [query, maps = maps_] {
-        maps->enter(query.odom_epoch, query.areas);
-        if (query.begins) maps->explorer.begin();
-        nav::RouteGround ground(maps->planner, maps->platform, maps->areas, query.within);
-        return maps->explorer.step(ground, query.place, seconds(query.made.time_since_epoch()),
-                                   query.blocked);
-      },
-      [reply](Result<nav::ExploreStep> step) { reply(std::move(step)); });
-}
-
-void Router::clear(const ClearPlaceQuery& query, const Reply<std::optional<Eigen::Vector3d>>& reply) {
-  compute(
-      {.name = "clear place", .modelled = params_.modelled, .lane = "maps"},
-      [query, maps = maps_] {
-        maps->enter(query.odom_epoch, query.areas);
-        set_team(maps->planner, query.team, maps->platform.width / 2);
-        return nav::find_clear_place(maps->planner, query.query);
-      },
-      [reply](Result<std::optional<Eigen::Vector3d>> found) { reply(std::move(found)); });
+      reply);
 }
 
 Reason reason_of(nav::Standing standing) {

@@ -25,9 +25,15 @@ struct RouteAreas {
   nav::AreaSet binding{};  ///< For routes.
 };
 
+/// The frame of a query, and the areas that bind the robot there.
+struct RouteContext {
+  std::uint32_t odom_epoch{};  ///< Epoch of the odometry frame; maps of another epoch are discarded.
+  RouteAreas areas{};
+};
+
 /// A scan for the map of the global planner, which uses some of them, and a request for the next step of the
 /// route. Odometry frame, m.
-struct RouteJob {
+struct RouteJob : RouteContext {
   std::shared_ptr<const Scan> scan{};
   std::optional<Eigen::Vector3d> goal{};  ///< Unset: the scan enters the map, and no route is requested.
   Eigen::Vector3d place{0, 0, 0};         ///< Position of the body.
@@ -35,44 +41,34 @@ struct RouteJob {
   nav::RouteAsk ask{};
   double blocked_ahead{};         ///< See nav::RouteRequest.
   std::vector<TeamRobot> team{};  ///< The other robots.
-  std::uint32_t odom_epoch{};     ///< Epoch of that frame; maps of another epoch are discarded.
   std::uint64_t generation{};     ///< Number of the goal.
-  RouteAreas areas{};
   Time made{};
 };
 
 /// A query to the global planner. Odometry frame, m.
-struct RouteQuery {
+struct RouteQuery : RouteContext {
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
-  std::uint32_t odom_epoch{};  ///< As in RouteJob.
-  RouteAreas areas{};
 };
 
 /// A goal to be judged before it is accepted. Odometry frame, m.
-struct GoalQuery {
+struct GoalQuery : RouteContext {
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
-  bool replace{};              ///< Replaces a goal where the body cannot stand by the nearest place.
-  std::uint32_t odom_epoch{};  ///< As in RouteJob.
-  RouteAreas areas{};
+  bool replace{};  ///< Replaces a goal where the body cannot stand by the nearest place.
 };
 
 /// A request for the next goal of an exploration. Odometry frame, m.
-struct ExploreQuery {
+struct ExploreQuery : RouteContext {
   Eigen::Vector3d place{0, 0, 0};  ///< Position of the body.
   bool blocked{};                  ///< The goal of the last answer could not be reached.
   bool begins{};                   ///< The exploration begins: nothing counts as unreachable any more.
-  std::uint32_t odom_epoch{};      ///< As in RouteJob.
-  RouteAreas areas{};
-  nav::AreaSet within{};  ///< Only this is to be explored; empty: everything.
+  nav::AreaSet within{};           ///< Only this is to be explored; empty: everything.
   Time made{};
 };
 
 /// A request for a place out of another robot's way. Odometry frame, m.
-struct ClearPlaceQuery {
+struct ClearPlaceQuery : RouteContext {
   nav::ClearQuery query{};
   std::vector<TeamRobot> team{};  ///< As in RouteJob; those that do not make way cost nav::kNoWay.
-  RouteAreas areas{};
-  std::uint32_t odom_epoch{};  ///< As in RouteJob.
 };
 
 /// The services of the router: the next step of the followed route, a query for a route that is not stored,
@@ -85,19 +81,11 @@ struct RouteServices {
   Service<ClearPlaceQuery, std::optional<Eigen::Vector3d>> clear{"clear place", 2};
 };
 
-struct RouterParams {
-  Platform platform{};
-  nav::RouteParams route{};
-  Duration min_period{200ms};        ///< Between two scans that enter the map.
-  Duration min_period_standing{1s};  ///< The same while the robot is stationary and has no goal.
-  Duration modelled{20ms};           ///< Duration of a job in rehearsal.
-};
-
 /// The component of the global planner, on a strand of its own: a graph of the observed free space, and the
 /// followed route. After a restart its map is empty; the next scans fill it.
 class Router : public Component {
  public:
-  Router(RouterParams params, Executor& strand, Log log, RouteServices& services);
+  Router(const Platform& platform, Executor& strand, Log log, RouteServices& services);
 
  protected:
   Result<void> on_start() override;
@@ -105,12 +93,10 @@ class Router : public Component {
  private:
   struct Maps;
   void step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::RouteStep>& reply);
-  void find(const RouteQuery& query, const Reply<nav::Route>& reply);
-  void check(const GoalQuery& query, const Reply<nav::GoalFinding>& reply);
-  void explore(const ExploreQuery& query, const Reply<nav::ExploreStep>& reply);
-  void clear(const ClearPlaceQuery& query, const Reply<std::optional<Eigen::Vector3d>>& reply);
+  /// Answers the queries to a service by jobs: `work(maps, query)` returns the answer.
+  template <class Query, class Answer, class Work>
+  void serve(Service<Query, Answer>& service, const char* name, Work work);
 
-  RouterParams params_;
   RouteServices& services_;
   std::shared_ptr<Maps> maps_;
   std::optional<Time> taken_{};  ///< Time when the last scan entered the map.

@@ -32,15 +32,6 @@ constexpr double kClocksApart = 0.5;                 // s; longer than any delay
 constexpr double kPairedWithin = 0.2;                // s; between a scan and the odometry heard with it
 constexpr int kScansApart = 3;                       // consecutive scans; fewer are those of a busy computer
 
-/// Adds what the odometry knows of its place.
-std::optional<OdometryReport> with_place(std::optional<OdometryReport> report,
-                                         const perception::OdometryState& state) {
-  if (!report) return report;
-  report->relocalised = state.relocalised;
-  report->steps = state.steps;
-  return report;
-}
-
 }  // namespace
 
 Scans::Scans(Executor& strand, Log log, const Platform& platform, const ScanService& output, Report report,
@@ -204,27 +195,30 @@ std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
   const perception::OdometryState& state = odometry_->update(scan.points, scan.isolated, scan.deskewed);
   // In a map of an unknown place the robot is as lost as without one.
   const Localisation at = state.unplaced ? Localisation::lost : state.health;
-  const auto newest = history_.at(history_.newest());
+  OdometryReport report{.stamp = scan.stamp,
+                        .T_local_base = state.pose,
+                        .instance = instance_,
+                        .health = at,
+                        .sigma_seen = state.sigma_seen,
+                        .wheels_slip = state.wheels_slip,
+                        .relocalised = state.relocalised,
+                        .steps = state.steps};
+  double unsure = early_;  // Of the pose's time, s.
   // A pose of the stamp of another clock would be one of long ago.
-  const bool apart = apart_ >= kScansApart;
-  const bool heard = now() - odometry_heard_ <= kOdometryHeard;
-  if (const auto T_driver_base = history_.at(scan.stamp); T_driver_base && !(apart && heard))
-    return OdometryReport{scan.stamp,
-                          state.pose,
-                          state.pose * T_driver_base->inverse(),
-                          instance_,
-                          early_ > 0 && at == Localisation::ok ? Localisation::weak : at,
-                          std::hypot(state.sigma(), platform_.max_speed * early_),
-                          state.sigma_seen,
-                          state.wheels_slip};
-  // Otherwise the driver's frame began again, or it is silent.
-  if (!newest || !apart || !heard) return std::nullopt;
-  // The driver's clock is another one: what it sent last is of about the time of the scan.
-  const auto health = at == Localisation::ok ? Localisation::weak : at;
-  return OdometryReport{
-      history_.newest(), state.pose,       state.pose * newest->inverse(),
-      instance_,         health,           std::hypot(state.sigma(), platform_.max_speed * kPairedWithin),
-      state.sigma_seen,  state.wheels_slip};
+  const bool other_clock = apart_ >= kScansApart && now() - odometry_heard_ <= kOdometryHeard;
+  auto T_driver_base = other_clock ? Error{Reason::out_of_range} : history_.at(scan.stamp);
+  if (!T_driver_base) {
+    // The driver's frame began again, or it is silent: no pose. Or its clock is another one: what it sent
+    // last is of about the time of the scan.
+    T_driver_base = history_.at(history_.newest());
+    if (!T_driver_base || !other_clock) return std::nullopt;
+    report.stamp = history_.newest();
+    unsure = kPairedWithin;
+  }
+  report.T_local_driver = state.pose * T_driver_base->inverse();
+  if (unsure > 0 && at == Localisation::ok) report.health = Localisation::weak;
+  report.sigma = std::hypot(state.sigma(), platform_.max_speed * unsure);
+  return report;
 }
 
 void Scans::report_clock_steps() {
@@ -261,7 +255,7 @@ void Scans::pass_on(std::size_t lidar, const Waiting& waiting) {
   for (const perception::ScanWarning& warning : complete.warnings)
     warn(lidars_[lidar].topic, warning.code, warning.reason, warning.text);
   std::optional<OdometryReport> report;
-  if (located && complete.stamp != 0) report = with_place(locate(complete), odometry_->state());
+  if (located && complete.stamp != 0) report = locate(complete);
   // The odometry knows roll and pitch better than a filter of the IMU alone.
   const auto attitude = report && report->health != Localisation::lost ? std::nullopt : complete.attitude;
   call(output_,

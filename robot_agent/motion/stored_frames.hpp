@@ -13,11 +13,7 @@ struct OdometrySample {
   Pose3 T_odom_base{};
   std::uint64_t stamp{};  ///< Of the driver's clock, ns; 0: the driver sends none.
   Time received{};        ///< Of the agent's clock.
-  bool operator==(const OdometrySample& other) const {
-    return T_odom_base.position == other.T_odom_base.position &&
-           T_odom_base.orientation.coeffs() == other.T_odom_base.orientation.coeffs() &&
-           stamp == other.stamp && received == other.received;
-  }
+  bool operator==(const OdometrySample&) const = default;
 };
 
 /// The state of Frames that survives a restart of the agent.
@@ -39,11 +35,7 @@ struct StoredFrames {
     return T_map_odom == other.T_map_odom && height == other.height && odom_epoch == other.odom_epoch &&
            map_epoch == other.map_epoch && recognised == other.recognised;
   }
-  bool operator==(const StoredFrames& other) const {
-    return same_frame(other) && newest == other.newest && pose_sigma == other.pose_sigma &&
-           yaw_sigma == other.yaw_sigma && T_odom_driver.position == other.T_odom_driver.position &&
-           T_odom_driver.orientation.coeffs() == other.T_odom_driver.orientation.coeffs();
-  }
+  bool operator==(const StoredFrames&) const = default;
 };
 
 }  // namespace adit::agent

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nav/geometry/planar_transform.hpp"
-
 namespace adit::agent {
 namespace {
 
@@ -16,7 +14,7 @@ constexpr double kOutline = 0.1;     // m: cells of the map around a robot's out
 
 /// The outline of a robot, body frame of this one.
 struct Box {
-  nav::PlanarTransform T_box_body;
+  PlanarTransform T_box_body;
   double length{}, width{};  ///< Half of them, with the margin, m.
   double low{}, high{};      ///< Heights in odom, m.
 };
@@ -29,7 +27,7 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   std::vector<Box> boxes;
   for (const TeamRobot& robot : team)
     if ((robot.pose.position() - body.position()).norm() <= kReach)
-      boxes.push_back({nav::PlanarTransform(robot.pose.inverse() * body), robot.length / 2 + kPoseErrors,
+      boxes.push_back({PlanarTransform(robot.pose.inverse() * body), robot.length / 2 + kPoseErrors,
                        robot.width / 2 + kPoseErrors, robot.z - kPoseErrors, robot.z + kTallest});
   if (boxes.empty()) return scan;
   auto rest = std::make_shared<Scan>();
@@ -75,7 +73,7 @@ void set_team(nav::RoutePlanner& planner, const std::vector<TeamRobot>& team, do
       for (double x = -length; x <= length; x += kStep)
         for (double y = -width; y <= width; y += kStep) {
           const Eigen::Vector2d at = robot.pose * Eigen::Vector2d(x, y);
-          planner.clear_obstacle({at.x(), at.y(), robot.z});
+          planner.map().clear_obstacle({at.x(), at.y(), robot.z});
         }
     }
     if (robot.cost > 0.0)
@@ -83,7 +81,7 @@ void set_team(nav::RoutePlanner& planner, const std::vector<TeamRobot>& team, do
                         std::max(robot.length, robot.width) / 2 + half_width,
                         robot.cost});
   }
-  planner.set_team(std::move(places));
+  planner.map().set_team(std::move(places));
 }
 
 }  // namespace adit::agent

@@ -5,18 +5,9 @@
 #include <cmath>
 
 namespace adit::sim {
-namespace {
-
-nav::TerrainParams params_of(double range) {
-  nav::TerrainParams params;
-  params.range = std::min(range, TerrainSurvey::kMaxRange);
-  return params;
-}
-
-}  // namespace
 
 TerrainSurvey::TerrainSurvey(const Platform& platform, double range)
-    : map_(platform, params_of(range)), range_(range) {}
+    : map_(platform, std::min(range, kMaxRange)), range_(range) {}
 
 void TerrainSurvey::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
   map_.add_scan(points, body, stamp_s);

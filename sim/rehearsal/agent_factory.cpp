@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/rehearsal/agent_factory.hpp"
 
-#include "nav/planners/falco/shared_library.hpp"
+#include "nav/planners/falco/falco_planner.hpp"
 #include "robot_agent/agent.hpp"
 #include "sim/defects/defect.hpp"
 #include "sim/defects/intercepted_participant.hpp"
@@ -50,7 +50,7 @@ Result<AgentFactory> make_agent_factory(const std::string& defect,
     // The map is the world's frame: the ground of the start is where the world has it, unless a key says so.
     params.start_height = context.spec.settings.start_height.value_or(context.start_ground);
     params.seed = context.seed;
-    params.library = nav::shared_library;
+    params.library = nav::PlannerLibrary::shared;
     params.disk = decoration.disk ? decoration.disk : context.disk;
     params.end = context.end;
     if (adjust) adjust(params);

@@ -16,7 +16,7 @@
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
-#include "nav/planners/falco/shared_library.hpp"
+#include "nav/planners/falco/falco_planner.hpp"
 #include "nav_msgs/msg/Odometry.h"
 #include "robot_agent/agent.hpp"
 #include "sensor_msgs/msg/BatteryState.h"
@@ -71,7 +71,7 @@ class AgentBench {
                       const Wrap& wrap = {})
       : params_(std::move(params)), scheduler_(seed), network_(scheduler_, {seed}) {
     params_.tree = tree;
-    if (!params_.library) params_.library = nav::shared_library;
+    if (!params_.library) params_.library = nav::PlannerLibrary::shared;
     machine_ = scheduler_.machine("r1", 77777s);
     if (wrap) machine_ = wrap(std::move(machine_));
     world_ = scheduler_.machine("world", 3s);

@@ -43,7 +43,7 @@ TEST_F(MuxTest, NothingPassesUntilASourceIsEnabled) {
   EXPECT_TRUE(nav.passed.empty());
   mux.step(now);
   EXPECT_EQ(last(), Motion{Stand{}});
-  EXPECT_EQ(mux.enabled(), "");
+  EXPECT_FALSE(mux.fresh(now));
 }
 
 TEST_F(MuxTest, OnlyTheEnabledSourcePassesAndAtOnce) {
@@ -102,8 +102,10 @@ TEST_F(MuxTest, UnknownNameEnablesNothing) {
   mux.enable("a", now);
   settle();
   mux.enable("c", now);
-  EXPECT_EQ(mux.enabled(), "");
+  EXPECT_FALSE(mux.fresh(now));
   a.write(kSlow, now);
+  b.write(kSlow, now);
+  EXPECT_FALSE(mux.fresh(now));
   EXPECT_EQ(last(), Motion{Stand{}});
 }
 

@@ -259,7 +259,7 @@ TEST(Areas, NoRouteLeavesThem) {
   const Eigen::Vector3d from(2, 2, 0), to(18, 2, 0);
   const double straight = planner.plan(from, to).length;
   const AreaSet areas = set_of({area("shaft", AreaKind::keep_out, {{8, 0}, {12, 10}})});
-  planner.set_areas(areas);
+  planner.map().set_areas(areas);
   const Route route = planner.plan(from, to);
   ASSERT_TRUE(route.found());
   EXPECT_GT(route.length, straight + 5);
@@ -268,10 +268,10 @@ TEST(Areas, NoRouteLeavesThem) {
     for (double t = 0; t <= 1; t += 0.02)
       EXPECT_TRUE(areas.permits(route.points[i] + t * (route.points[i + 1] - route.points[i]), half));
   EXPECT_EQ(planner.plan(from, {10, 5, 0}).status, RouteStatus::unreachable);
-  planner.set_areas(set_of({area("west", AreaKind::keep_in, {{0, 0}, {7, 20}})}));
+  planner.map().set_areas(set_of({area("west", AreaKind::keep_in, {{0, 0}, {7, 20}})}));
   EXPECT_EQ(planner.plan(from, to).status, RouteStatus::unreachable);
   EXPECT_TRUE(planner.plan(from, {5, 15, 0}).found());
-  planner.set_areas({});
+  planner.map().set_areas({});
   EXPECT_NEAR(planner.plan(from, to).length, straight, 0.01);
 }
 
@@ -281,7 +281,7 @@ TEST(Areas, NoRouteLeavesThemThroughUnknownSpace) {
     for (int x = 0; x < 40; ++x) planner.set_ground(middle(x, y));
   planner.finish();
   ASSERT_TRUE(planner.plan({1, 1, 0}, {9, 1, 0}).found());
-  planner.set_areas(set_of({area("near", AreaKind::keep_in, {{-2, -2}, {6, 6}})}));
+  planner.map().set_areas(set_of({area("near", AreaKind::keep_in, {{-2, -2}, {6, 6}})}));
   EXPECT_FALSE(planner.plan({1, 1, 0}, {9, 1, 0}).found());
   EXPECT_TRUE(planner.plan({1, 1, 0}, {5, 1, 0}).found());
 }

@@ -15,10 +15,6 @@ void twist(const model::Unicycle&, const T* v, T* t) {
   t[0] = v[0], t[1] = T(0), t[2] = v[1];
 }
 template <class T>
-void twist(const model::Differential& m, const T* v, T* t) {
-  t[0] = 0.5 * (v[0] + v[1]), t[1] = T(0), t[2] = (v[1] - v[0]) / m.track;
-}
-template <class T>
 void twist(const model::Car& m, const T* v, T* t) {
   t[0] = v[0], t[1] = T(0), t[2] = v[0] * tan(v[1]) / m.wheelbase;
 }

@@ -264,7 +264,7 @@ TEST(ClosedLoopWithoutCorrespondences, OnlyTheMonitorIsLeft) {
   ClosedLoop with(wheeled(), world, {0, 0, 0}), without(wheeled(), world, {0, 0, 0});
   auto emptied = std::make_shared<PlannerLibrary>(*PlannerLibrary::build(wheeled()));
   for (auto& option : emptied->options) option.grid = {};
-  without.local_navigation = LocalNavigation(wheeled(), {}, {}, emptied);
+  without.local_navigation = LocalNavigation(wheeled(), emptied);
   EXPECT_TRUE(with.drive(Target::to({8, 0}), 25));
   EXPECT_FALSE(without.drive(Target::to({8, 0}), 15));
   EXPECT_EQ(without.blocked_cycles, 0);

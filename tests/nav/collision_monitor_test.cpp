@@ -307,9 +307,7 @@ TEST(CollisionMonitor, StopsWhenAPersonWalksIntoIt) {
 TEST(CollisionMonitor, WithoutItsTrackerItWouldStillMove) {
   // What the test before would say of a monitor that takes him to stand.
   Meeting m;
-  CollisionMonitorParams blind;
-  blind.tracker.slowest = 100;
-  m.monitor = ScannedMonitor(m.platform, blind);
+  m.monitor.knows_movers = false;
   m.person = {7.5, 0.1};
   m.pose.x = -2;
   m.touch({2, 0, 0}, 0.6);

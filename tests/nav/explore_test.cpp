@@ -2,7 +2,7 @@
 // Exploration of worlds of boxes by a robot that drives along its routes without inertia.
 #include <gtest/gtest.h>
 
-#include "nav/explore/route_ground.hpp"
+#include "nav/explore/explorer.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace adit::nav::test {
@@ -111,7 +111,7 @@ TEST(Explorer, SeesTheBlocksAndSaysDone) {
   EXPECT_GT(share_of_streets(run.explorer.coverage(), 3), 0.97);
   EXPECT_LT(run.metres, 190);
   EXPECT_EQ(run.last.frontiers, 0u);
-  EXPECT_LT(run.explorer.memory(), 1'000'000u);
+  EXPECT_LT(run.explorer.coverage().memory(), 1'000'000u);
   run.explorer.begin();
   run.stamp += 1;
   EXPECT_FALSE(run.explorer.step(run.ground, {run.pose.x, run.pose.y, 0}, run.stamp, false).goal)

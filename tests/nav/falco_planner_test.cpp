@@ -44,7 +44,7 @@ class Planner : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { library_ = PlannerLibrary::build(wheeled()); }
   static void TearDownTestSuite() { library_.reset(); }
-  FalcoPlanner planner_{wheeled(), {}, library_};
+  FalcoPlanner planner_{wheeled(), library_};
 
  private:
   static inline std::shared_ptr<const PlannerLibrary> library_;
@@ -110,7 +110,7 @@ TEST_F(Planner, AllRoundBlockedSaysSo) {
 TEST_F(Planner, WithoutCorrespondencesItDrivesThroughWalls) {
   auto emptied = std::make_shared<PlannerLibrary>(*PlannerLibrary::build(wheeled()));
   for (auto& option : emptied->options) option.grid = {};
-  FalcoPlanner blind(wheeled(), {}, emptied);
+  FalcoPlanner blind(wheeled(), emptied);
   Cells cells;
   add_box(cells, 1.5f, 1.7f, -3.0f, 3.0f);
   EXPECT_GT(deepest(blind.plan(Target::to({4, 0}), {}, seen_from({}, cells), 0), wheeled(), cells), 0.1);

@@ -86,10 +86,10 @@ TEST(HybridAStarSearch, PathsAreContinuousAndKeepClear) {
   double bend_before = 0;
   for (std::size_t i = 1; i < path.count; ++i) {
     const Pose2 moved = path.spots[i - 1].pose.inverse() * path.spots[i].pose;
-    EXPECT_NEAR(std::hypot(moved.x, moved.y), search.motions().spacing(), 1e-3);
+    EXPECT_NEAR(std::hypot(moved.x, moved.y), MotionPrimitives::kSpacing, 1e-3);
     EXPECT_GE(path.spots[i].cost, path.spots[i - 1].cost);
     EXPECT_TRUE(search.free(field, path.spots[i].pose, false, 0.06f)) << i;
-    const double bend = moved.yaw / search.motions().spacing();
+    const double bend = moved.yaw / MotionPrimitives::kSpacing;
     if (path.spots[i].direction == path.spots[i - 1].direction) {
       EXPECT_LT(std::fabs(bend - bend_before), 0.35) << "steering takes its way";
     }

@@ -35,7 +35,7 @@ class IlqrTest : public testing::Test {
   }
   Solver solver = make();
 };
-using Models = testing::Types<model::Unicycle, model::Differential, model::Car, model::Holonomic>;
+using Models = testing::Types<model::Unicycle, model::Car, model::Holonomic>;
 TYPED_TEST_SUITE(IlqrTest, Models);
 
 TYPED_TEST(IlqrTest, KeepsToAWaveWithinMillimetres) {

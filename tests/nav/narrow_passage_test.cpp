@@ -221,15 +221,15 @@ TEST(NarrowPassage, ABlockedOneIsClosedInItsMiddle) {
   EXPECT_TRUE(step.replanned);
   ASSERT_EQ(planner.map().blocked_places().size(), 1u);
   EXPECT_NEAR(planner.map().blocked_places().front().y, 3.0, 0.15) << "not before the robot, which is aside";
-  planner.unblock();
-  EXPECT_FALSE(planner.has_blocked_places());
+  planner.map().unblock();
+  EXPECT_FALSE(planner.map().has_blocked_places());
 }
 
 TEST(NarrowPassage, WhatMovesClosesNoneIfThereIsNoOtherWay) {
   RoutePlanner planner(car());
   const RouteStep step = look_around_in_hall(planner, true);
   EXPECT_EQ(step.state, RouteStep::State::along);
-  EXPECT_FALSE(planner.has_blocked_places());
+  EXPECT_FALSE(planner.map().has_blocked_places());
 }
 
 TEST(NarrowPassage, FarBeforeItWhatBlocksIsAheadOfTheRobot) {

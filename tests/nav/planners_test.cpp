@@ -140,7 +140,7 @@ TEST(PolygonFootprint, DrivesBackwardsWithItsOwnShape) {
   const auto library = PlannerLibrary::build(wedge);
   EXPECT_GT(library->options.front().back.rings(), 0);
   EXPECT_EQ(PlannerLibrary::build(wheeled())->options.front().back.rings(), 0) << "symmetric: the same grid";
-  FalcoPlanner planner(wedge, {}, library);
+  FalcoPlanner planner(wedge, library);
   const Plan plan = planner.plan(Target::along(M_PI, 0.5), {}, {}, 0);
   EXPECT_TRUE(plan.reverse);
 }

@@ -2,7 +2,7 @@
 #pragma once
 #include <cmath>
 
-#include "nav/routing/route_target.hpp"
+#include "nav/routing/route_follower.hpp"
 #include "tests/nav/closed_loop.hpp"
 
 namespace adit::nav::test {

@@ -45,12 +45,12 @@ TEST(RouteSteps, AStepThatWasOnlySeenFromAfarProvesNothing) {
 LineCost over_edge(double height, SurfaceMap::Seen seen) {
   const RouteParams params;
   SurfaceMap map(params, ScanProfile::most_wrong(wheeled()));
-  RouteGraph graph(map, wheeled(), params);
+  TileBuilder builder(wheeled(), params);
   map.begin_scan(0, 0);
   for (int ix = 80; ix < 120; ++ix)
     for (int iy = -20; iy < 20; ++iy)
       map.see_free(ix, iy, ix < 100 ? 0.0f : static_cast<float>(height), 0.0f, seen);
-  return graph.line().line({9, 0, 0}, {11, 0, height});
+  return RouteLine(map, builder).line({9, 0, 0}, {11, 0, height});
 }
 
 TEST(RouteSteps, AHighEdgeIsOneAlsoFromAfar) {
@@ -66,9 +66,8 @@ TEST(RouteSteps, AHighEdgeIsOneAlsoFromAfar) {
 // A ring of two ways: straight on over an edge that only one scan showed, from afar, or a long way round. A
 // robot that took the edge for a wall turned back in the middle of a corridor.
 TEST(RouteSteps, ALongWayRoundIsNoAnswerToADoubt) {
-  const RouteParams params;
-  SurfaceMap map(params, ScanProfile::most_wrong(wheeled()));
-  RouteGraph graph(map, wheeled(), params);
+  RoutePlanner planner(wheeled());
+  SurfaceMap& map = planner.map();
   map.begin_scan(0, 0);
   const auto floor = [&](int x0, int x1, int y0, int y1) {
     for (int ix = x0; ix < x1; ++ix)
@@ -82,7 +81,7 @@ TEST(RouteSteps, ALongWayRoundIsNoAnswerToADoubt) {
       }
   };
   floor(60, 260, 0, 200);
-  const Route route = graph.plan({8, 0.8, 0}, {12, 0.8, 0.25});
+  const Route route = planner.plan({8, 0.8, 0}, {12, 0.8, 0.25});
   ASSERT_TRUE(route.found());
   EXPECT_LT(route.length, 5.0);
 }
@@ -116,7 +115,7 @@ struct Rise {
 Rise passes_rise(const Platform& platform, double rise, int run) {
   const RouteParams params;
   SurfaceMap map(params, ScanProfile::most_wrong(platform));
-  RouteGraph graph(map, platform, params);
+  TileBuilder builder(platform, params);
   map.begin_scan(0, 0);
   double highest = 0;
   for (int ix = 80; ix < 140; ++ix) {
@@ -126,8 +125,8 @@ Rise passes_rise(const Platform& platform, double rise, int run) {
     highest = z;
   }
   const double end = 10.5 + 0.1 * run * 1.2 / rise;
-  return {graph.line().line({9, 0, 0}, {13.8, 0, highest}).passable,
-          graph.line().line({end, -1, highest}, {end, 1, highest}).passable};
+  return {RouteLine(map, builder).line({9, 0, 0}, {13.8, 0, highest}).passable,
+          RouteLine(map, builder).line({end, -1, highest}, {end, 1, highest}).passable};
 }
 
 TEST(RouteSteps, StairsAreTooSteepForARampAlsoFromAfar) {
@@ -240,7 +239,7 @@ TEST(RouteSteps, ObstacleOnAnotherFloorBlocksThisFloorToo) {
   const RouteParams params;
   for (const bool wall : {false, true}) {
     SurfaceMap map(params, ScanProfile::most_wrong(wheeled()));
-    RouteGraph graph(map, wheeled(), params);
+    TileBuilder builder(wheeled(), params);
     for (int scan = 0; scan < 8; ++scan) {  // from afar, a wall at the foot of what is higher
       map.begin_scan(20, 0);
       for (int ix = 0; ix < 16; ++ix) {
@@ -250,7 +249,7 @@ TEST(RouteSteps, ObstacleOnAnotherFloorBlocksThisFloorToo) {
     }
     for (int ix = 0; ix < 16; ++ix) map.see_free(ix, 0, 0.3f, 0.0f);
     ASSERT_EQ(map.size(), 2);
-    EXPECT_EQ(graph.line().line({0.8, 0.3, 0.3}, {0.8, 1.5, 0.3}).passable, !wall);
+    EXPECT_EQ(RouteLine(map, builder).line({0.8, 0.3, 0.3}, {0.8, 1.5, 0.3}).passable, !wall);
   }
 }
 

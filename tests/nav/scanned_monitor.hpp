@@ -9,11 +9,15 @@ namespace adit::nav::test {
 /// A collision monitor with its detector on the same thread.
 class ScannedMonitor : public CollisionMonitor {
  public:
-  explicit ScannedMonitor(const Platform& platform, const CollisionMonitorParams& params = {})
-      : CollisionMonitor(platform, params), detector_(make_detector()) {}
+  explicit ScannedMonitor(const Platform& platform)
+      : CollisionMonitor(platform), detector_(make_detector()) {}
+
+  bool knows_movers{true};  ///< Else it takes everything to stand.
 
   void look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
-    see(std::make_shared<const DetectedObstacles>(detector_.look(points, body, stamp_s)));
+    DetectedObstacles seen = detector_.look(points, body, stamp_s);
+    if (!knows_movers) seen.movers.clear();
+    see(std::make_shared<const DetectedObstacles>(std::move(seen)));
   }
 
  private:

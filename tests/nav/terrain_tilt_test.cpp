@@ -78,7 +78,8 @@ TEST(TerrainTilt, RegistersAnUnreportedPitch) {
       ASSERT_TRUE(cell.cost < 1 || std::fabs(cell.y) > 1.8f) << i << ": " << cell.x << ' ' << cell.y;
   }
   EXPECT_NEAR(map.tilt_error().x(), -0.035f, 0.006f);
-  EXPECT_NEAR(map.ground_gradient().x(), 0.0f, 0.01f) << "what the ground does is not what the body does";
+  EXPECT_NEAR(map.ground().plane().gradient.x(), 0.0f, 0.01f)
+      << "what the ground does is not what the body does";
 }
 
 TEST(TerrainTilt, FindsEveryEdgeFromTwoMetres) {

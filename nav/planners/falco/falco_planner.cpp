@@ -3,15 +3,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <mutex>
-
-#include "nav/planners/falco/shared_library.hpp"
 
 namespace adit::nav {
 namespace {
 
+constexpr double kRoomyMargin = 0.5;  ///< Clearance beside the footprint where there is plenty of room, m.
+constexpr double kSideMargin = 0.09;  ///< Clearance beside it where there is less room, m.
+// Clearance ahead and behind, m; at least what a turn on the spot needs.
+constexpr double kFrontMargin = 0.20;
+constexpr double kTightMargin = 0.05;    ///< Clearance beside it in tight space, m.
+constexpr double kSqueezeMargin = 0.02;  ///< Clearance beside it when nothing else is free, m.
+constexpr double kShortScale = 0.5;      ///< Scale of the second, shorter and more curved library.
+constexpr double kTightSpeed = 0.5;      ///< Speed with only the tight margin, m/s.
+constexpr double kSqueezeSpeed = 0.25;   ///< Speed with only the squeeze margin, m/s.
+constexpr double kGoalTolerance = 0.25;  ///< Default goal tolerance, m.
+constexpr double kGoalSpread = 95.0;     ///< Maximum angle between a heading and the goal's bearing, degrees.
+// Beyond this angle a library with tighter margins is preferred, degrees.
+constexpr double kDirectSpread = 35.0;
+constexpr double kStickSpread = 45.0;   ///< Maximum angle to a direction target, degrees.
+constexpr double kDetourSpread = 60.0;  ///< Maximum angle for paths that are only partly free, degrees.
 constexpr double kDegree = M_PI / 180.0;
 constexpr int kAngles = CorrespondenceGrid::kAngles;
 constexpr int kHeadingStep = 10;  ///< Degrees.
@@ -44,19 +56,18 @@ float heading_weight(double degrees) {
 
 }  // namespace
 
-std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& platform,
-                                                            const FalcoPlannerParams& params) {
+std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& platform) {
   const Footprint body(platform);
   const double turn_needs = body.radius() - body.front() + kTurnSlack;
-  PathTreeParams large = params.tree;
+  PathTreeParams large;
   if (platform.path_segment > 0) large.segment = platform.path_segment;
   if (platform.path_curvature > 0)
-    for (double& c : large.curvature) c *= platform.path_curvature / params.tree.curvature.front();
+    for (double& c : large.curvature) c *= platform.path_curvature / PathTreeParams{}.curvature.front();
   PathTreeParams small = large;
-  small.segment *= params.short_scale;
-  small.blend *= params.short_scale;
-  small.spacing *= params.short_scale;
-  for (double& c : small.curvature) c /= params.short_scale;
+  small.segment *= kShortScale;
+  small.blend *= kShortScale;
+  small.spacing *= kShortScale;
+  for (double& c : small.curvature) c /= kShortScale;
 
   const PathTree long_tree(large), short_tree(small);
   auto library = std::make_shared<PlannerLibrary>();
@@ -70,19 +81,19 @@ std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& plat
   };
   // Libraries with wide margins come first, because they are the fastest. The long library with tight margins
   // comes before the short ones, so that the robot sees a narrow passage from afar and lines up in time.
-  const double wide = std::max(params.front_margin, turn_needs);
-  add(long_tree, wide, params.roomy_margin, platform.max_speed, 6);
+  const double wide = std::max(kFrontMargin, turn_needs);
+  add(long_tree, wide, kRoomyMargin, platform.max_speed, 6);
   library->options.back().roomy = true;
-  add(long_tree, wide, params.side_margin, platform.max_speed, 5);
-  add(long_tree, turn_needs, params.tight_margin, params.tight_speed, 5);
-  add(short_tree, wide, params.side_margin, platform.max_speed, 1);
-  add(short_tree, turn_needs, params.tight_margin, params.tight_speed, 1);
-  add(short_tree, turn_needs, params.squeeze_margin, params.squeeze_speed, 1);
+  add(long_tree, wide, kSideMargin, platform.max_speed, 5);
+  add(long_tree, turn_needs, kTightMargin, kTightSpeed, 5);
+  add(short_tree, wide, kSideMargin, platform.max_speed, 1);
+  add(short_tree, turn_needs, kTightMargin, kTightSpeed, 1);
+  add(short_tree, turn_needs, kSqueezeMargin, kSqueezeSpeed, 1);
   library->rotation = RotationTable(body.grown(kTurnMargin, kTurnMargin));
   return library;
 }
 
-std::shared_ptr<const PlannerLibrary> shared_library(const Platform& p) {
+std::shared_ptr<const PlannerLibrary> PlannerLibrary::shared(const Platform& p) {
   // All of a platform that PlannerLibrary::build looks at.
   std::vector<double> key{p.length, p.width, p.max_speed, p.path_curvature, p.path_segment};
   for (const Eigen::Vector2d& corner : p.footprint) key.insert(key.end(), {corner.x(), corner.y()});
@@ -90,7 +101,7 @@ std::shared_ptr<const PlannerLibrary> shared_library(const Platform& p) {
   static std::map<std::vector<double>, std::shared_ptr<const PlannerLibrary>> libraries;
   const std::lock_guard lock(mutex);
   auto& library = libraries[key];
-  if (!library) library = PlannerLibrary::build(p, {});
+  if (!library) library = build(p);
   return library;
 }
 
@@ -118,11 +129,9 @@ void FalcoPlanner::Cells::to_list() {
     }
 }
 
-FalcoPlanner::FalcoPlanner(const Platform& platform, const FalcoPlannerParams& params,
-                           std::shared_ptr<const PlannerLibrary> library)
+FalcoPlanner::FalcoPlanner(const Platform& platform, std::shared_ptr<const PlannerLibrary> library)
     : platform_(platform),
-      params_(params),
-      library_(library ? std::move(library) : PlannerLibrary::build(platform, params)),
+      library_(library ? std::move(library) : PlannerLibrary::build(platform)),
       body_(platform) {
   for (const Option& o : library_->options) rings_ = std::max(rings_, o.grid.rings());
   occupied_.size(rings_);
@@ -139,7 +148,7 @@ Plan FalcoPlanner::plan(const Target& target, const Pose2& pose, std::span<const
   const bool nowhere =
       target.kind == Target::Kind::none || (target.kind == Target::Kind::direction && target.speed <= 0.0);
   if (nowhere) return plan;
-  if (goal.distance <= (target.tolerance > 0.0 ? target.tolerance : params_.tolerance)) {
+  if (goal.distance <= (target.tolerance > 0.0 ? target.tolerance : kGoalTolerance)) {
     plan.arrived = true;
     return plan;
   }
@@ -158,19 +167,14 @@ Plan FalcoPlanner::plan(const Target& target, const Pose2& pose, std::span<const
 }
 
 FalcoPlanner::Goal FalcoPlanner::goal_of(const Target& target, const Pose2& pose) {
-  Goal goal{std::numeric_limits<double>::infinity(),
-            wrap_angle(target.direction),
-            params_.stick_spread,
-            0,
-            target.kind == Target::Kind::goal,
-            false};
-  if (target.kind == Target::Kind::goal) {
+  const bool place = target.kind == Target::Kind::goal;
+  Goal goal{.spread = place ? kGoalSpread : kStickSpread, .own_headings = place};
+  goal.headings = static_cast<int>(goal.spread / kHeadingStep);
+  if (place) {
     const Eigen::Vector2d to = pose.inverse() * target.goal;
     goal.distance = to.norm();
     goal.bearing = goal.distance > 1e-6 ? round_to_degree(std::atan2(to.y(), to.x())) : 0.0;
-    goal.spread = params_.goal_spread;
   }
-  goal.headings = static_cast<int>(goal.spread / kHeadingStep);
   if (target.kind == Target::Kind::direction) {
     goal.bearing = heading_hold_.bearing(target, pose);
     goal.backwards = heading_hold_.held() && std::cos(target.direction) < 0;
@@ -334,7 +338,7 @@ bool FalcoPlanner::vote(const Option& option, int stage, double spread, Choice& 
       sum *= way.weight;
       if (sum > best_score) {
         best_score = sum;
-        best = {&option, stage, h, top_node, g, ease(h, stage, top_node)};
+        best = {&option, stage, h, top_node, ease(h, stage, top_node)};
       }
     }
   }
@@ -344,8 +348,8 @@ bool FalcoPlanner::vote(const Option& option, int stage, double spread, Choice& 
 // Chooses the first library with a path over good ground about towards the target; if there is none, the
 // first library with any path.
 bool FalcoPlanner::choose(const Goal& goal, Choice& best) {
-  const double direct = std::min(goal.spread, params_.direct_spread);
-  const double detour = std::min(goal.spread, params_.detour_spread);
+  const double direct = std::min(goal.spread, kDirectSpread);
+  const double detour = std::min(goal.spread, kDetourSpread);
   Choice other;
   bool any = false;
   for (const Option& option : library_->options) {
@@ -367,9 +371,6 @@ void FalcoPlanner::write_path(const Choice& choice, const Goal& goal, const Pose
   const double turned = wrap_angle(goal.bearing + offset_[choice.heading] * kDegree);
   plan.reverse = way.reverse;
   plan.turn = way.turn;
-  plan.heading = static_cast<int>(std::lround(turned / kDegree));
-  plan.group = choice.group;
-  plan.option = static_cast<int>(choice.option - library_->options.data());
 
   const Pose2 start = pose * Pose2{0, 0, turned};
   const auto path = tree.path(PathTree::path_through(choice.stage, choice.node));
@@ -386,7 +387,7 @@ void FalcoPlanner::write_path(const Choice& choice, const Goal& goal, const Pose
 
 double FalcoPlanner::speed_limit(const Target& target, const Choice& choice, const Pose2& pose,
                                  const Plan& plan, std::span<const ObstaclePoint> obstacles) const {
-  double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
+  double limit = path_speed(plan, pose, body_, platform_, obstacles);
   limit = std::min(limit, choice.option->max_speed);
   limit = std::min(limit, platform_.max_speed * (kSlowest + (1 - kSlowest) * choice.ease));
   return target.speed > 0.0 ? std::min(limit, target.speed) : limit;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,28 +15,6 @@
 #include "nav/planners/planner.hpp"
 
 namespace adit::nav {
-
-/// Parameters of FalcoPlanner.
-struct FalcoPlannerParams {
-  PathTreeParams tree{};
-  double roomy_margin{0.5};  ///< Clearance beside the footprint where there is plenty of room, m, [0, 1].
-  double side_margin{0.09};  ///< Clearance beside it where there is less room, m, [0, 1].
-  /// Clearance ahead and behind, m, [0, 1]; at least what a turn on the spot needs.
-  double front_margin{0.20};
-  double tight_margin{0.05};    ///< Clearance beside it in tight space, m, [0.02, 0.5].
-  double squeeze_margin{0.02};  ///< Clearance beside it when nothing else is free, m, [0, 0.5].
-  double short_scale{0.5};      ///< Scale of the second, shorter and more curved library, [0.2, 1].
-  double tight_speed{0.5};      ///< Speed with only the tight margin, m/s, (0, 2].
-  double squeeze_speed{0.25};   ///< Speed with only the squeeze margin, m/s, (0, 2].
-  double tolerance{0.25};       ///< Default goal tolerance, m, [0.02, 2].
-  double goal_spread{95.0};  ///< Maximum angle between a heading and the goal's bearing, degrees, [10, 120].
-  /// Beyond this angle a library with tighter margins is preferred, degrees, [10, 120].
-  double direct_spread{35.0};
-  double stick_spread{45.0};  ///< Maximum angle to a direction target, degrees, [10, 120].
-  /// Maximum angle for paths that are only partly free, degrees, [10, 120].
-  double detour_spread{60.0};
-  PathSpeedParams speed{};
-};
 
 /// Lookup tables of the local planner: its trajectory libraries, longest and widest first, and the rotation
 /// table of the footprint. Immutable; robots of one platform can share it.
@@ -54,8 +33,10 @@ struct PlannerLibrary {
   RotationTable rotation{};
 
   /// Builds the tables (about 60 ms, 8 MB).
-  static std::shared_ptr<const PlannerLibrary> build(const Platform& platform,
-                                                     const FalcoPlannerParams& params = {});
+  static std::shared_ptr<const PlannerLibrary> build(const Platform& platform);
+  /// The same, once per process for all platforms that need the same tables. For processes that start many
+  /// agents; callable from any thread.
+  static std::shared_ptr<const PlannerLibrary> shared(const Platform& platform);
 };
 
 /// The local planner `trajectories`: selects the heading, group and path of the trajectory library that lead
@@ -77,27 +58,24 @@ class FalcoPlanner final : public Planner {
  public:
   static constexpr int kHeadings = 36;
 
-  /// `library`: of this platform and these params; built here when null.
-  explicit FalcoPlanner(const Platform& platform, const FalcoPlannerParams& params = {},
-                        std::shared_ptr<const PlannerLibrary> library = nullptr);
+  /// `library`: of this platform; built here when null.
+  explicit FalcoPlanner(const Platform& platform, std::shared_ptr<const PlannerLibrary> library = nullptr);
 
   Plan plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
             double stamp_s) override;
-
-  const FalcoPlannerParams& params() const { return params_; }
 
  private:
   using Option = PlannerLibrary::Option;
 
   /// The target as seen from the robot.
   struct Goal {
-    double distance;  ///< Infinite for a direction, m.
-    double bearing;   ///< Body frame, rad.
-    double spread;    ///< Degrees.
-    int headings;     ///< Number of headings to each side of the bearing.
+    double distance{std::numeric_limits<double>::infinity()};  ///< Infinite for a direction, m.
+    double bearing{};                                          ///< Body frame, rad.
+    double spread{};                                           ///< Degrees.
+    int headings{};                                            ///< To each side of the bearing.
     /// Straight ahead and straight back are candidates too; `bearing` is a whole number of degrees.
-    bool own_headings;
-    bool backwards;  ///< The target asks for driving backwards.
+    bool own_headings{};
+    bool backwards{};  ///< The target asks for driving backwards.
   };
   /// How the robot would take a heading.
   struct Approach {
@@ -112,7 +90,6 @@ class FalcoPlanner final : public Planner {
     int stage{};
     int heading{};  ///< Index; 0 is the bearing of the goal.
     int node{};
-    int group{};
     float ease{1};  ///< Weight of the ground.
   };
   /// An occupied polar cell.
@@ -144,7 +121,6 @@ class FalcoPlanner final : public Planner {
                      std::span<const ObstaclePoint> obstacles) const;
 
   Platform platform_;
-  FalcoPlannerParams params_;
   std::shared_ptr<const PlannerLibrary> library_;
   Footprint body_;
   int rings_{0};  ///< Of the largest grid.

@@ -37,7 +37,7 @@ void CostToGo::fill(const DistanceField& field, const Eigen::Vector2d& target, f
   const float needs = std::max(0.05f, radius - kCell / 2);
   const auto room = [&](int i, int j) { return field.clearance(middle(i), middle(j)) - needs; };
   for (int j = 0; j < kSide; ++j)
-    for (int i = 0; i < kSide; ++i) free_[static_cast<std::size_t>(j * kSide + i)] = room(i, j) >= 0.0f;
+    for (int i = 0; i < kSide; ++i) free_[j * kSide + i] = room(i, j) >= 0.0f;
   const bool beside = std::fabs(tx) > kHalf - kCell || std::fabs(ty) > kHalf - kCell;
   const bool is_inside = !beside && field.clearance(tx, ty) < radius;
   const float from = std::hypot(tx, ty);
@@ -56,7 +56,7 @@ void CostToGo::fill(const DistanceField& field, const Eigen::Vector2d& target, f
     std::pop_heap(open_.begin(), open_.end());
     const Open next = open_.back();
     open_.pop_back();
-    if (next.cost > cost_[static_cast<std::size_t>(next.cell)]) continue;
+    if (next.cost > cost_[next.cell]) continue;
     const int i = next.cell % kSide, j = next.cell / kSide;
     for (int b = std::max(0, j - 1); b <= std::min(kSide - 1, j + 1); ++b)
       for (int a = std::max(0, i - 1); a <= std::min(kSide - 1, i + 1); ++a) {
@@ -75,7 +75,7 @@ float CostToGo::at(float x, float y) const {
   float best = kUnreachable;
   for (int b = std::max(0, j - 1); b <= std::min(kSide - 1, j + 1); ++b)
     for (int a = std::max(0, i - 1); a <= std::min(kSide - 1, i + 1); ++a) {
-      const float cost = cost_[static_cast<std::size_t>(b * kSide + a)];
+      const float cost = cost_[b * kSide + a];
       if (cost < kUnreachable) best = std::min(best, cost + std::hypot(middle(a) - x, middle(b) - y));
     }
   return best;

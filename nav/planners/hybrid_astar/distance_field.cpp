@@ -6,15 +6,6 @@
 #include <limits>
 
 namespace adit::nav {
-namespace {
-
-constexpr float kNone = 1e6f;  ///< No obstacle in the row, squared cells.
-
-}  // namespace
-
-DistanceField::DistanceField()
-    : distance_(static_cast<std::size_t>(kSide) * kSide, kFar),
-      cost_(static_cast<std::size_t>(kSide) * kSide, 0.0f) {}
 
 void DistanceField::fill(std::span<const ObstaclePoint> obstacles, float ahead) {
   std::fill(distance_.begin(), distance_.end(), kNone);

@@ -18,8 +18,6 @@ class DistanceField {
   static constexpr float kHalf = kCell * kSide / 2;  ///< Distance from the centre to the border, m.
   static constexpr float kFar = 3.0f;                ///< Upper limit of the distances, m.
 
-  DistanceField();
-
   /// Updates the field. `ahead`: offset added to x, m. Obstacles of cost 1 are solid; others are ground with
   /// a cost. The distances are exact from cell to cell (P. Felzenszwalb and D. Huttenlocher, "Distance
   /// transforms of sampled functions", 2012).
@@ -43,7 +41,9 @@ class DistanceField {
   static std::size_t index(int i, int j) { return static_cast<std::size_t>(j * kSide + i); }
   void transform(std::size_t first, std::size_t stride);
 
-  std::vector<float> distance_, cost_;
+  static constexpr float kNone = 1e6f;  ///< No obstacle in the row, squared cells.
+  std::vector<float> distance_ = std::vector<float>(kSide * kSide, kFar);
+  std::vector<float> cost_ = std::vector<float>(kSide * kSide, 0.0f);
   SolidPoints points_{};
   std::array<float, kSide> row_{}, out_{};
   std::array<int, kSide> parabola_{};

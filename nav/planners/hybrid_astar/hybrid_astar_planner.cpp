@@ -10,7 +10,15 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kMoving = 0.08;  ///< A slower robot is stationary, m/s.
+constexpr double kArrivalTolerance = 0.25;  ///< Default goal tolerance, m.
+constexpr double kBetter = 0.6;             ///< Required gain of a new path whose direction changes, m.
+constexpr double kOffPath = 0.25;           ///< Maximum distance of the robot from its path, m.
+constexpr double kOffHeading = 0.4;         ///< Maximum heading error on the path, rad.
+constexpr double kStickCone = 50.0;         ///< Maximum angle between a path and a direction target, degrees.
+constexpr double kReverseSpeed = 1.0;       ///< Speed limit backwards, m/s.
+constexpr double kTightPlaceSpeed = 0.3;    ///< Speed limit with only the tight margin, m/s.
+constexpr double kRoughSlows = 0.75;        ///< Fraction of the speed lost on ground of cost 1.
+constexpr double kMoving = 0.08;            ///< A slower robot is stationary, m/s.
 /// A part ends this far before its last pose if the robot is almost stationary, m.
 constexpr double kTurned = 0.13;
 constexpr double kOver = 0.04;          ///< A part ends this far before its last pose, m.
@@ -34,12 +42,8 @@ constexpr double kBehindPassage = 0.4;  ///< The gap ends this far behind its mi
 
 }  // namespace
 
-HybridAStarPlanner::HybridAStarPlanner(const Platform& platform, const HybridAStarPlannerParams& params)
-    : platform_(platform),
-      params_(params),
-      body_(platform),
-      rear_(platform.rear_axle()),
-      search_(platform, params.search) {}
+HybridAStarPlanner::HybridAStarPlanner(const Platform& platform)
+    : platform_(platform), body_(platform), rear_(platform.rear_axle()), search_(platform) {}
 
 Plan HybridAStarPlanner::plan(const Target& target, const Pose2& pose,
                               std::span<const ObstaclePoint> obstacles, double stamp_s) {
@@ -52,7 +56,7 @@ Plan HybridAStarPlanner::plan(const Target& target, const Pose2& pose,
       target.kind == Target::Kind::none || (target.kind == Target::Kind::direction && target.speed <= 0.0);
   const double distance = (target.goal - pose.position()).norm();
   const bool goal = target.kind == Target::Kind::goal;
-  plan.arrived = goal && distance <= (target.tolerance > 0.0 ? target.tolerance : params_.tolerance);
+  plan.arrived = goal && distance <= (target.tolerance > 0.0 ? target.tolerance : kArrivalTolerance);
   if (nowhere || plan.arrived) {
     current_.count = 0;
     heading_hold_.forget();
@@ -118,7 +122,7 @@ HybridAStarTask HybridAStarPlanner::task_of(const Target& target, const Pose2& p
   task.only = std::fabs(wrap_angle(target.direction)) <= M_PI / 2 ? 1 : -1;
   task.heading = bearing;
   const double now = std::fabs(wrap_angle((task.only > 0 ? 0.0 : M_PI) - bearing));
-  task.spread = std::max(params_.stick_spread * M_PI / 180.0, now + 0.05);
+  task.spread = std::max(kStickCone * M_PI / 180.0, now + 0.05);
   return task;
 }
 
@@ -130,7 +134,7 @@ bool HybridAStarPlanner::find(HybridAStarTask task) {
   HybridAStarTask before = task;
   before.target = (*task.passage * Pose2{rear_ - kLineUp, 0, 0}).position();
   before.passage.reset();
-  const bool easy = task.room >= platform_.width + 2 * params_.search.margin + kEasy;
+  const bool easy = task.room >= platform_.width + 2 * HybridAStarSearch::kMargin + kEasy;
   if (find_there(before) && (found_.complete || !easy)) return true;
   task.passage.reset();
   return easy && find_there(task);
@@ -138,10 +142,9 @@ bool HybridAStarPlanner::find(HybridAStarTask task) {
 
 // Finds a path with the full margin; if there is none, one with the tight margin.
 bool HybridAStarPlanner::find_there(HybridAStarTask task) {
-  const auto& search = params_.search;
   for (const bool tight : {false, true}) {
     task.tight = tight;
-    const double margin = tight ? search.tight_margin : search.margin;
+    const double margin = tight ? HybridAStarSearch::kTightMargin : HybridAStarSearch::kMargin;
     cost_to_go_.fill(distance_field_, task.target, static_cast<float>(platform_.width / 2 + margin));
     if (search_.find(distance_field_, cost_to_go_, task, found_)) return true;
   }
@@ -152,9 +155,9 @@ void HybridAStarPlanner::see_passage(const Target& target, const Pose2& pose,
                                      std::span<const ObstaclePoint> obstacles, HybridAStarTask& task) const {
   if (!target.passage) return;
   const auto strip = fit_widest_strip(pose.inverse() * *target.passage, obstacles);
-  const auto& search = params_.search;
-  if (!strip || strip->room < platform_.width + 2 * search.tight_margin ||
-      strip->room > platform_.width + 2 * search.margin + kGap || strip->line.inverse().x > kBehindPassage)
+  if (!strip || strip->room < platform_.width + 2 * HybridAStarSearch::kTightMargin ||
+      strip->room > platform_.width + 2 * HybridAStarSearch::kMargin + kGap ||
+      strip->line.inverse().x > kBehindPassage)
     return;
   task.passage = Pose2{rear_, 0, 0} * strip->line;
   task.room = strip->room;
@@ -180,7 +183,7 @@ bool HybridAStarPlanner::misses(const Pose2& passage, const Pose2& rear) const {
 bool HybridAStarPlanner::is_better(const Pose2& rear, bool to_passage) const {
   const double ahead = current_.cost() - static_cast<double>(current_.spots[at_].cost);
   // Through a gap, a central path is worth a slightly longer distance, but no turning.
-  if (to_passage) return found_.cost() < ahead + (found_.straight_on() ? params_.better : -params_.better);
+  if (to_passage) return found_.cost() < ahead + (found_.straight_on() ? kBetter : -kBetter);
   if (found_.through) return true;
   if (found_.tight && !current_.tight) return false;
   const bool other = found_.spots[0].direction != current_.spots[end_].direction;
@@ -188,7 +191,7 @@ bool HybridAStarPlanner::is_better(const Pose2& rear, bool to_passage) const {
   const Eigen::Vector2d end =
       rear.inverse() * (current_.spots[current_.count - 1].pose * Eigen::Vector2d(rear_, 0.0));
   const double left = cost_to_go_.at(static_cast<float>(end.x()), static_cast<float>(end.y()));
-  return found_.cost() + found_.left + params_.better < ahead + left;
+  return found_.cost() + found_.left + kBetter < ahead + left;
 }
 
 void HybridAStarPlanner::adopt(const Pose2& rear) {
@@ -234,12 +237,11 @@ bool HybridAStarPlanner::follows_on(const Pose2& rear) {
       return std::fabs(wrap_angle(current_.spots[i].pose.yaw - rear.yaw));
     };
     while (at_ + 1 < end_ && off(at_ + 1) < off(at_)) ++at_;
-    if (off(end_) > kFaces)
-      return (current_.spots[end_].pose.position() - rear.position()).norm() < params_.off_path;
+    if (off(end_) > kFaces) return (current_.spots[end_].pose.position() - rear.position()).norm() < kOffPath;
     next_part();
   }
   at_ = nearest();
-  const double left = search_.motions().spacing() * static_cast<double>(end_ - at_);
+  const double left = MotionPrimitives::kSpacing * static_cast<double>(end_ - at_);
   if (left < kOver || (left < kTurned && std::fabs(speed_) < kSlow)) {
     if (!changes_ahead()) return false;
     next_part();
@@ -247,8 +249,8 @@ bool HybridAStarPlanner::follows_on(const Pose2& rear) {
     at_ = nearest();
   }
   const Pose2& spot = current_.spots[at_].pose;
-  return (spot.position() - rear.position()).norm() < params_.off_path &&
-         std::fabs(wrap_angle(spot.yaw - rear.yaw)) < params_.off_heading;
+  return (spot.position() - rear.position()).norm() < kOffPath &&
+         std::fabs(wrap_angle(spot.yaw - rear.yaw)) < kOffHeading;
 }
 
 bool HybridAStarPlanner::passable(const Pose2& rear) const {
@@ -265,9 +267,9 @@ bool HybridAStarPlanner::passable(const Pose2& rear) const {
 // Whether the path up to a spot reaches, before the robot could slow down, a place with only the tight
 // margin.
 bool HybridAStarPlanner::tightens(const Pose2& back, std::size_t last) const {
-  const double slow = std::max(0.0, speed_ * speed_ - params_.tight_speed * params_.tight_speed);
+  const double slow = std::max(0.0, speed_ * speed_ - kTightPlaceSpeed * kTightPlaceSpeed);
   const double ahead = kTightAhead + slow / (2.0 * platform_.max_acceleration);
-  const auto end = std::min(last, at_ + static_cast<std::size_t>(ahead / search_.motions().spacing()));
+  const auto end = std::min(last, at_ + static_cast<std::size_t>(ahead / MotionPrimitives::kSpacing));
   for (std::size_t i = at_; i <= end; i += 2)
     if (!search_.free(distance_field_, back * current_.spots[i].pose, false, 0.0f)) return true;
   return false;
@@ -283,22 +285,21 @@ void HybridAStarPlanner::write(const Target& target, const Pose2& pose,
     plan.turn = wrap_angle(current_.spots[at_ + 1].pose.yaw - current_.spots[at_].pose.yaw) > 0 ? 1 : -1;
   for (std::size_t i = begin; i <= last; ++i)
     plan.poses[plan.pose_count++] = current_.spots[i].pose * Pose2{rear_, 0, 0};
-  plan.length = static_cast<double>(plan.pose_count - 1) * search_.motions().spacing();
+  plan.length = static_cast<double>(plan.pose_count - 1) * MotionPrimitives::kSpacing;
   plan.reverse = current_.spots[end_of_plan].direction < 0;
   const Eigen::Vector2d end = plan.poses[plan.pose_count - 1].position();
-  plan.ends_at_goal = target.kind == Target::Kind::goal && (end - target.goal).norm() <= params_.tolerance;
-  plan.option = 0;
-  double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
-  if (plan.reverse) limit = std::min(limit, params_.reverse_speed);
+  plan.ends_at_goal = target.kind == Target::Kind::goal && (end - target.goal).norm() <= kArrivalTolerance;
+  double limit = path_speed(plan, pose, body_, platform_, obstacles);
+  if (plan.reverse) limit = std::min(limit, kReverseSpeed);
   const Pose2 back = (pose * Pose2{-rear_, 0, 0}).inverse();
-  if (current_.tight && tightens(back, last)) limit = std::min(limit, params_.tight_speed);
+  if (current_.tight && tightens(back, last)) limit = std::min(limit, kTightPlaceSpeed);
   // Ground with a cost is driven slowly.
   float rough = 0.0f;
   for (std::size_t i = at_; i <= last; i += 2) {
     const Pose2 at = back * current_.spots[i].pose;
     rough = std::max(rough, distance_field_.cost(static_cast<float>(at.x), static_cast<float>(at.y)));
   }
-  limit = std::min(limit, platform_.max_speed * (1.0 - params_.rough_slows * static_cast<double>(rough)));
+  limit = std::min(limit, platform_.max_speed * (1.0 - kRoughSlows * static_cast<double>(rough)));
   plan.max_speed = target.speed > 0.0 ? std::min(limit, target.speed) : limit;
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
 #include <optional>
 
 #include "nav/planners/heading_hold.hpp"
@@ -10,20 +9,6 @@
 
 namespace adit::nav {
 
-/// Parameters of HybridAStarPlanner.
-struct HybridAStarPlannerParams {
-  HybridAStarSearchParams search{};
-  double tolerance{0.25};     ///< Default goal tolerance, m, [0.02, 2].
-  double better{0.6};         ///< Required gain of a new path whose direction changes, m, [0, 5].
-  double off_path{0.25};      ///< Maximum distance of the robot from its path, m, [0.05, 1].
-  double off_heading{0.4};    ///< Maximum heading error on the path, rad, [0.05, 1.5].
-  double stick_spread{50.0};  ///< Maximum angle between a path and a direction target, degrees, [10, 120].
-  double reverse_speed{1.0};  ///< Speed limit backwards, m/s, (0, 10].
-  double tight_speed{0.3};    ///< Speed limit with only the tight margin, m/s, (0, 2].
-  double rough_slows{0.75};   ///< Fraction of the speed lost on ground of cost 1, [0, 0.95].
-  PathSpeedParams speed{};
-};
-
 /// Local planner for tight space and for robots that cannot turn on the spot, of any drive. HybridAStarSearch
 /// finds a path of short motions, forwards and backwards, for the next metres, starting with the robot's
 /// curvature, so the robot turns round in as many moves as the place requires. A path whose direction changes
@@ -31,7 +16,7 @@ struct HybridAStarPlannerParams {
 /// driven in one direction.
 class HybridAStarPlanner final : public Planner {
  public:
-  explicit HybridAStarPlanner(const Platform& platform, const HybridAStarPlannerParams& params = {});
+  explicit HybridAStarPlanner(const Platform& platform);
 
   Plan plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
             double stamp_s) override;
@@ -68,15 +53,13 @@ class HybridAStarPlanner final : public Planner {
              Plan& plan) const;
 
   Platform platform_;
-  HybridAStarPlannerParams params_;
   Footprint body_;
   double rear_;  ///< Distance of the rear axle behind base_link, m.
   HybridAStarSearch search_;
   DistanceField distance_field_{};
   CostToGo cost_to_go_{};
   HybridAStarPath found_{}, current_{};  ///< current_: odometry frame.
-  std::size_t at_{0},
-      end_{0};  ///< On the current path: index of the robot, and of the next change of direction.
+  std::size_t at_{0}, end_{0};     ///< On the current path: the robot, and the next change of direction.
   Target current_target_{};        ///< Of the current path.
   std::optional<Pose2> before_{};  ///< Of the rear axle, odometry frame.
   double before_s_{0};

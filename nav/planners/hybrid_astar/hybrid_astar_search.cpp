@@ -7,6 +7,18 @@
 namespace adit::nav {
 namespace {
 
+constexpr float kInflation = 0.25f;   ///< Inflation beyond the margin, m.
+constexpr float kNarrowCost = 2.0f;   ///< Additional cost per metre at the margin.
+constexpr float kRoughCost = 5.0f;    ///< Additional cost per metre on ground of cost 1.
+constexpr double kFarthestEnd = 3.5;  ///< Maximum distance of a path's end from its start, m.
+constexpr double kGoalRadius = 0.15;  ///< Goal tolerance, m.
+constexpr float kReverseCost = 1.6f;  ///< Cost of a metre backwards relative to one forwards.
+constexpr float kChangeCost = 0.8f;   ///< Cost of a change of direction, m.
+constexpr double kSteerCost = 0.04;   ///< Cost of changing the curvature by one level, m.
+constexpr float kTurnCost = 0.3f;     ///< Cost of a turn on the spot by MotionPrimitives::kTurn, m.
+// Minimum gain towards the target of a path that does not reach it, m.
+constexpr float kLeastGainTowards = 0.3f;
+constexpr int kExpansions = 3000;  ///< Maximum number of expanded nodes.
 /// Weight of the heuristic: expands fewer states for slightly longer paths.
 constexpr float kHeuristicWeight = 1.25f;
 /// A body that starts inside its margin may stay inside for this distance, m.
@@ -23,12 +35,11 @@ constexpr double kSteepest = 1.0;  ///< Maximum heading error off the axis, rad.
 
 }  // namespace
 
-HybridAStarSearch::HybridAStarSearch(const Platform& platform, const HybridAStarSearchParams& params)
-    : params_(params),
-      primitives_(platform, params.motions),
+HybridAStarSearch::HybridAStarSearch(const Platform& platform)
+    : primitives_(platform),
       base_(platform.rear_axle()),
       width_(platform.width),
-      outline_(Footprint(platform).grown(params.tight_margin, params.tight_margin)),
+      outline_(Footprint(platform).grown(kTightMargin, kTightMargin)),
       front_(base_ + Footprint(platform).front()),
       turns_(platform.turns_on_spot()),
       closed_(static_cast<std::size_t>(kCells) * kCells * kHeadings * 3, 0) {
@@ -38,7 +49,7 @@ HybridAStarSearch::HybridAStarSearch(const Platform& platform, const HybridAStar
   for (std::size_t i = 0; i < disc_count_; ++i)
     discs_[i] = static_cast<float>(base_ - platform.length / 2 + half * static_cast<double>(2 * i + 1));
   wide_ = static_cast<float>(
-      std::max(platform.width / 2 + params.margin, std::hypot(half, platform.width / 2) + params.margin / 2));
+      std::max(platform.width / 2 + kMargin, std::hypot(half, platform.width / 2) + kMargin / 2));
   nodes_.reserve(kMaxNodes);
   open_.reserve(kMaxNodes);
 }
@@ -69,9 +80,7 @@ float HybridAStarSearch::price(const DistanceField& field, const Pose2& pose, bo
     rough = std::max(rough, field.cost(px, py));
   }
   if (tight_ && room < kCoarse && !outline_free(field, pose, leaving ? depth_ : 0.0f)) return -1.0f;
-  const auto comfort = static_cast<float>(std::max(1e-3, params_.comfort));
-  return 1.0f + static_cast<float>(params_.crowded) * (1.0f - std::clamp(room / comfort, 0.0f, 1.0f)) +
-         static_cast<float>(params_.rough) * rough;
+  return 1.0f + kNarrowCost * (1.0f - std::clamp(room / kInflation, 0.0f, 1.0f)) + kRoughCost * rough;
 }
 
 std::int32_t HybridAStarSearch::state(const Pose2& pose, int direction) const {
@@ -87,10 +96,9 @@ bool HybridAStarSearch::ends(const CostToGo& cost_to_go, const HybridAStarTask& 
                              const Node& node) const {
   const Eigen::Vector2d base = node.pose * Eigen::Vector2d(base_, 0.0);
   const Eigen::Vector2d start(base_, 0.0);
-  if (task.goal && (base - task.target).norm() <= params_.goal_radius) return true;
-  if (cost_to_go.least() > 0 && node.cost_to_go < cost_to_go.least() + static_cast<float>(params_.least_gain))
-    return true;
-  return (base - start).norm() >= params_.reach;
+  if (task.goal && (base - task.target).norm() <= kGoalRadius) return true;
+  if (cost_to_go.least() > 0 && node.cost_to_go < cost_to_go.least() + kLeastGainTowards) return true;
+  return (base - start).norm() >= kFarthestEnd;
 }
 
 void HybridAStarSearch::expand(const DistanceField& field, const CostToGo& cost_to_go,
@@ -98,7 +106,7 @@ void HybridAStarSearch::expand(const DistanceField& field, const CostToGo& cost_
   for (const int direction : {1, -1}) {
     if (task.only != 0 && direction != task.only) continue;
     for (int level = 0; level < MotionPrimitives::kLevels; ++level) {
-      const Node& from = nodes_[static_cast<std::size_t>(index)];
+      const Node& from = nodes_[index];
       const bool on = from.direction == direction && from.level >= 0;
       if (on && std::abs(level - from.level) > 1) continue;
       const bool changes = from.direction == -direction;
@@ -110,17 +118,17 @@ void HybridAStarSearch::expand(const DistanceField& field, const CostToGo& cost_
       const double along = direction > 0 ? end.yaw : end.yaw + M_PI;
       if (std::fabs(wrap_angle(along - task.heading)) > task.spread) continue;
       const std::int32_t there = state(end, direction);
-      if (there < 0 || closed_[static_cast<std::size_t>(there)] == round_) continue;
+      if (there < 0 || closed_[there] == round_) continue;
       const float middle_price = price(field, middle, leaving), end_price = price(field, end, leaving);
       if (middle_price < 0 || end_price < 0) continue;
       const Eigen::Vector2d base = end * Eigen::Vector2d(base_, 0.0);
       const float left = cost_to_go.at(static_cast<float>(base.x()), static_cast<float>(base.y()));
       if (left >= CostToGo::kUnreachable) continue;
-      const auto step = static_cast<float>(primitives_.step());
+      const auto step = static_cast<float>(MotionPrimitives::kStep);
       float cost = 0.5f * (middle_price + end_price) * step;
-      if (direction < 0) cost *= static_cast<float>(params_.reverse_cost);
-      if (changes) cost += static_cast<float>(params_.change_cost);
-      if (on) cost += static_cast<float>(params_.steer_cost * std::abs(level - from.level));
+      if (direction < 0) cost *= kReverseCost;
+      if (changes) cost += kChangeCost;
+      if (on) cost += static_cast<float>(kSteerCost * std::abs(level - from.level));
       Node next{};
       next.pose = end;
       next.cost = from.cost + cost;
@@ -145,12 +153,12 @@ void HybridAStarSearch::add(Node next) {
 
 // A robot that drives stops first, which costs as much as a change of direction.
 void HybridAStarSearch::turn_on_spot(const DistanceField& field, std::int32_t index) {
-  const Node from = nodes_[static_cast<std::size_t>(index)];
+  const Node from = nodes_[index];
   for (const int side : {1, -1}) {
     if (from.parent >= 0 && from.direction == 0 && from.from != side) continue;
     const MotionPrimitives::MotionPrimitive& motion = primitives_.turn(side);
     const std::int32_t there = state(from.pose * motion.poses.back(), 0);
-    if (there < 0 || closed_[static_cast<std::size_t>(there)] == round_) continue;
+    if (there < 0 || closed_[there] == round_) continue;
     float most = 0;
     for (const Pose2& pose : motion.poses) {
       const float here = price(field, from.pose * pose, from.length < kLeaving);
@@ -160,8 +168,8 @@ void HybridAStarSearch::turn_on_spot(const DistanceField& field, std::int32_t in
     if (most < 0) continue;
     Node next = from;
     next.pose = from.pose * motion.poses.back();
-    next.cost += most * static_cast<float>(params_.turn_cost);
-    if (from.direction != 0) next.cost += static_cast<float>(params_.change_cost);
+    next.cost += most * kTurnCost;
+    if (from.direction != 0) next.cost += kChangeCost;
     next.parent = index;
     next.level = -1;
     next.direction = 0;
@@ -175,7 +183,7 @@ void HybridAStarSearch::turn_on_spot(const DistanceField& field, std::int32_t in
 // a side of the gap.
 bool HybridAStarSearch::expand_analytically(const DistanceField& field, const HybridAStarTask& task,
                                             std::int32_t index, HybridAStarPath& path) const {
-  const Pose2 at = task.passage->inverse() * nodes_[static_cast<std::size_t>(index)].pose;
+  const Pose2 at = task.passage->inverse() * nodes_[index].pose;
   const double end = kBehind - base_;
   if (at.x > end - 0.3 || std::fabs(at.yaw) > kSteepest) return false;
   const double before = -front_ - kStraight;
@@ -191,7 +199,7 @@ bool HybridAStarSearch::expand_analytically(const DistanceField& field, const Hy
 bool HybridAStarSearch::connect_to_axis(const DistanceField& field, const HybridAStarTask& task,
                                         std::int32_t index, double straight_from,
                                         HybridAStarPath& path) const {
-  const Node& node = nodes_[static_cast<std::size_t>(index)];
+  const Node& node = nodes_[index];
   const Pose2 at = task.passage->inverse() * node.pose;
   const double length = straight_from - at.x, slope = std::tan(at.yaw);
   const double bend = node.direction > 0 && node.level >= 0 ? primitives_.curvature(node.level) : 0.0;
@@ -220,7 +228,7 @@ bool HybridAStarSearch::connect_to_axis(const DistanceField& field, const Hybrid
     path.direction_changes = 0;
   }
   if (path.spots[path.count - 1].direction < 1) ++path.direction_changes;
-  const double end = kBehind - base_, spacing = primitives_.spacing();
+  const double end = kBehind - base_, spacing = MotionPrimitives::kSpacing;
   float cost = node.cost;
   for (double s = at.x; s + spacing / 2 < end;) {
     const double before = std::atan(s < straight_from ? y1((s - at.x) / length) : 0.0);
@@ -265,16 +273,16 @@ bool HybridAStarSearch::find(const DistanceField& field, const CostToGo& cost_to
   if (task.passage && expand_analytically(field, task, 0, path)) return true;
   if (start.cost_to_go >= CostToGo::kUnreachable) return false;
   if (!task.passage && cost_to_go.least() > 0 &&
-      start.cost_to_go < cost_to_go.least() + 2 * static_cast<float>(params_.least_gain))
+      start.cost_to_go < cost_to_go.least() + 2 * kLeastGainTowards)
     return false;
   open_.push_back({kHeuristicWeight * start.cost_to_go, 0});
   std::int32_t best = -1;
-  float nearest = start.cost_to_go - static_cast<float>(params_.least_gain);
-  for (int n = 0; n < params_.expansions && !open_.empty();) {
+  float nearest = start.cost_to_go - kLeastGainTowards;
+  for (int n = 0; n < kExpansions && !open_.empty();) {
     std::pop_heap(open_.begin(), open_.end());
     const std::int32_t index = open_.back().node;
     open_.pop_back();
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    const Node& node = nodes_[index];
     if (node.parent >= 0) {
       const auto there = static_cast<std::size_t>(state(node.pose, node.direction));
       if (closed_[there] == round_) continue;
@@ -300,11 +308,10 @@ bool HybridAStarSearch::find(const DistanceField& field, const CostToGo& cost_to
 }
 
 void HybridAStarSearch::write(std::int32_t index, HybridAStarPath& path) const {
-  path.left = nodes_[static_cast<std::size_t>(index)].cost_to_go;
+  path.left = nodes_[index].cost_to_go;
   std::array<std::int32_t, HybridAStarPath::kMax> chain;
   std::size_t length = 0;
-  for (std::int32_t i = index; nodes_[static_cast<std::size_t>(i)].parent >= 0;
-       i = nodes_[static_cast<std::size_t>(i)].parent) {
+  for (std::int32_t i = index; nodes_[i].parent >= 0; i = nodes_[i].parent) {
     if (length == chain.size()) break;
     chain[length++] = i;
   }
@@ -312,8 +319,8 @@ void HybridAStarSearch::write(std::int32_t index, HybridAStarPath& path) const {
   path.count = 1;
   path.direction_changes = 0;
   while (length-- > 0) {
-    const Node& node = nodes_[static_cast<std::size_t>(chain[length])];
-    const Node& before = nodes_[static_cast<std::size_t>(node.parent)];
+    const Node& node = nodes_[chain[length]];
+    const Node& before = nodes_[node.parent];
     if (path.count + MotionPrimitives::kPoses > HybridAStarPath::kMax) {
       path.complete = false;  // A longer path consists of many manoeuvres; the rest is planned later.
       while (path.count > 1 && path.spots[path.count - 1].direction == 0) --path.count;
@@ -325,7 +332,7 @@ void HybridAStarSearch::write(std::int32_t index, HybridAStarPath& path) const {
                             : primitives_.motion(node.from, node.level, node.direction);
     for (int i = 0; i < MotionPrimitives::kPoses; ++i) {
       const float share = static_cast<float>(i + 1) / MotionPrimitives::kPoses;
-      path.spots[path.count++] = {before.pose * motion.poses[static_cast<std::size_t>(i)],
+      path.spots[path.count++] = {before.pose * motion.poses[i],
                                   before.cost + share * (node.cost - before.cost), node.direction};
     }
   }

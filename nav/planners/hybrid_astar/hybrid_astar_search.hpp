@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "nav/planners/hybrid_astar/cost_to_go.hpp"
@@ -11,25 +10,6 @@
 #include "nav/planners/hybrid_astar/motion_primitives.hpp"
 
 namespace adit::nav {
-
-/// Parameters of HybridAStarSearch.
-struct HybridAStarSearchParams {
-  MotionPrimitiveParams motions{};
-  double margin{0.06};  ///< Clearance around the body, m, [0.02, 0.5].
-  /// Clearance when nothing else is free, from point to outline, m, [0.005, 0.5].
-  double tight_margin{0.02};
-  double comfort{0.25};      ///< Inflation beyond the margin, m, [0, 2].
-  double crowded{2.0};       ///< Additional cost per metre at the margin, [0, 20].
-  double rough{5.0};         ///< Additional cost per metre on ground of cost 1, [0, 100].
-  double reach{3.5};         ///< Maximum distance of a path's end from its start, m, [1, 4].
-  double goal_radius{0.15};  ///< Goal tolerance, m, [0.05, 1].
-  double reverse_cost{1.6};  ///< Cost of a metre backwards relative to one forwards, [1, 10].
-  double change_cost{0.8};   ///< Cost of a change of direction, m, [0, 10].
-  double steer_cost{0.04};   ///< Cost of changing the curvature by one level, m, [0, 1].
-  double turn_cost{0.3};     ///< Cost of a turn on the spot by MotionPrimitives::kTurn, m, [0, 5].
-  double least_gain{0.3};    ///< Minimum gain towards the target of a path that does not reach it, m, [0, 2].
-  int expansions{3000};      ///< Maximum number of expanded nodes, [100, 20000].
-};
 
 /// Start and target of a search; frame of the fields, m.
 struct HybridAStarTask {
@@ -78,7 +58,11 @@ struct HybridAStarPath {
 /// fixed, and nothing is allocated after construction.
 class HybridAStarSearch {
  public:
-  explicit HybridAStarSearch(const Platform& platform, const HybridAStarSearchParams& params = {});
+  static constexpr double kMargin = 0.06;  ///< Clearance around the body, m.
+  /// Clearance when nothing else is free, from point to outline, m.
+  static constexpr double kTightMargin = 0.02;
+
+  explicit HybridAStarSearch(const Platform& platform);
 
   /// Finds the path of least cost; false when none leads nearer to the target.
   bool find(const DistanceField& field, const CostToGo& cost_to_go, const HybridAStarTask& task,
@@ -86,7 +70,6 @@ class HybridAStarSearch {
   /// Whether the body is free at `pose` with its margin, or the tight one, reduced by `less`, m.
   bool free(const DistanceField& field, const Pose2& pose, bool tight, float less) const;
   const MotionPrimitives& motions() const { return primitives_; }
-  const HybridAStarSearchParams& params() const { return params_; }
 
  private:
   struct Node {
@@ -125,7 +108,6 @@ class HybridAStarSearch {
   bool ends(const CostToGo& cost_to_go, const HybridAStarTask& task, const Node& node) const;
   void write(std::int32_t index, HybridAStarPath& path) const;
 
-  HybridAStarSearchParams params_;
   MotionPrimitives primitives_;
   double base_;                           ///< Distance of base_link ahead of the poses' origin, m.
   double width_;                          ///< Of the body, m.

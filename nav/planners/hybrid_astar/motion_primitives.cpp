@@ -5,10 +5,15 @@
 #include <cmath>
 
 namespace adit::nav {
+namespace {
 
-MotionPrimitives::MotionPrimitives(const Platform& platform, const MotionPrimitiveParams& params)
-    : step_(params.step),
-      largest_(platform.turns_on_spot() ? params.curvature : params.car_share / platform.least_radius()) {
+constexpr double kSpotCurvature = 1.5;  // Largest curvature of a robot that can turn on the spot, 1/m.
+constexpr double kCarShare = 0.92;      // Of a car's largest curvature: the rest is left to correct errors.
+
+}  // namespace
+
+MotionPrimitives::MotionPrimitives(const Platform& platform)
+    : largest_(platform.turns_on_spot() ? kSpotCurvature : kCarShare / platform.least_radius()) {
   if (platform.path_curvature > 0) largest_ = std::min(largest_, platform.path_curvature);
   for (const int direction : {1, -1})
     for (int from = 0; from < kLevels; ++from)
@@ -17,18 +22,18 @@ MotionPrimitives::MotionPrimitives(const Platform& platform, const MotionPrimiti
         // Indices that differ by more: the robot steered while it was stationary.
         const double begin = std::abs(from - to) <= 1 ? curvature(from) : curvature(to);
         Pose2 pose{};
-        const double ds = direction * spacing();
+        const double ds = direction * kSpacing;
         for (int i = 0; i < kPoses; ++i) {
           const double bend = begin + (curvature(to) - begin) * (i + 0.5) / kPoses;
           const double turn = ds * bend;
           pose = pose * Pose2{ds * std::cos(turn / 2), ds * std::sin(turn / 2), turn};
-          motion.poses[static_cast<std::size_t>(i)] = pose;
+          motion.poses[i] = pose;
         }
         primitives_.push_back(motion);
       }
   for (const int side : {1, -1})
     for (int i = 0; i < kPoses; ++i)
-      turns_[side > 0 ? 0 : 1].poses[static_cast<std::size_t>(i)] = {0, 0, side * kTurn * (i + 1) / kPoses};
+      turns_[side > 0 ? 0 : 1].poses[i] = {0, 0, side * kTurn * (i + 1) / kPoses};
 }
 
 int MotionPrimitives::level(double curvature) const {

@@ -6,8 +6,6 @@
 
 namespace adit::nav {
 
-SolidPoints::SolidPoints() : points_(kMax) {}
-
 void SolidPoints::fill(std::span<const ObstaclePoint> obstacles, float ahead) {
   const auto square = [ahead](const ObstaclePoint& o) -> int {
     const float x = o.x + ahead;
@@ -26,26 +24,23 @@ void SolidPoints::fill(std::span<const ObstaclePoint> obstacles, float ahead) {
   auto next = begin_;
   for (const ObstaclePoint& o : obstacles)
     if (const int at = square(o); at >= 0 && count > 0) {
-      points_[next[static_cast<std::size_t>(at)]++] = {o.x + ahead, o.y};
+      points_[next[at]++] = {o.x + ahead, o.y};
       --count;
     }
 }
 
 float SolidPoints::depth(const Footprint& body, const Pose2& pose) const {
   constexpr float kNear = 0.2f;
-  const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
-  const auto x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
+  const IntoPose into(pose);
   const auto reach = static_cast<float>(body.radius()) + kNear;
   float most = -kNear;
-  for (int j = cell(y - reach); j <= cell(y + reach); ++j) {
+  for (int j = cell(into.y - reach); j <= cell(into.y + reach); ++j) {
     // The cells of a row are contiguous.
     const auto row = static_cast<std::size_t>(j * kSide);
-    const auto from = row + static_cast<std::size_t>(cell(x - reach));
-    const auto to = row + static_cast<std::size_t>(cell(x + reach));
-    for (std::uint32_t i = begin_[from]; i < begin_[to + 1]; ++i) {
-      const float dx = points_[i].x - x, dy = points_[i].y - y;
-      most = std::max(most, body.depth(c * dx + s * dy, c * dy - s * dx));
-    }
+    const auto from = row + static_cast<std::size_t>(cell(into.x - reach));
+    const auto to = row + static_cast<std::size_t>(cell(into.x + reach));
+    for (std::uint32_t i = begin_[from]; i < begin_[to + 1]; ++i)
+      most = std::max(most, body.depth(into(points_[i].x, points_[i].y)));
   }
   return most;
 }

@@ -16,7 +16,6 @@ namespace adit::nav {
 /// construction.
 class SolidPoints {
  public:
-  SolidPoints();
   /// Takes the obstacles of cost 1, with `ahead` metres added to x; those outside of the grid are ignored.
   void fill(std::span<const ObstaclePoint> obstacles, float ahead);
   /// Depth of the deepest point inside a body at `pose`, m; negative if no point is inside: then it is minus
@@ -33,7 +32,7 @@ class SolidPoints {
   static constexpr std::size_t kMax = 50'000;
   static int cell(float v) { return std::clamp(static_cast<int>((v + kHalf) / kCell), 0, kSide - 1); }
 
-  std::vector<Point> points_{};
+  std::vector<Point> points_ = std::vector<Point>(kMax);
   std::array<std::uint32_t, kSide * kSide + 1> begin_{};
 };
 

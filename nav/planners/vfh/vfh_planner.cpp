@@ -40,6 +40,7 @@ Plan VfhPlanner::plan(const Target& target, const Pose2& pose, std::span<const O
   if (plan.arrived || (!goal && target.speed <= 0)) return plan;
 
   double best = 1e9, way = 0;
+  int turn = 0;  // Degrees.
   for (int i = 0; i < kHeadings; ++i) {
     const double heading = wrap_angle(bearing + 2 * M_PI * i / kHeadings);
     const double free = free_along(heading, obstacles);
@@ -50,11 +51,11 @@ Plan VfhPlanner::plan(const Target& target, const Pose2& pose, std::span<const O
     if (cost >= best) continue;
     best = cost;
     way = free;
-    plan.heading = static_cast<int>(std::lround(heading * 180 / M_PI));
+    turn = static_cast<int>(std::lround(heading * 180 / M_PI));
   }
   plan.blocked = best > 1e8;
   if (plan.blocked) return plan;
-  const Pose2 start = pose * Pose2{0, 0, plan.heading * M_PI / 180};
+  const Pose2 start = pose * Pose2{0, 0, turn * M_PI / 180};
   plan.length = kSpacing * std::floor(std::min(way, distance) / kSpacing);
   plan.ends_at_goal = goal && distance <= way;
   for (double at = 0; at <= plan.length + 1e-9 && plan.pose_count < Plan::kMaxPath; at += kSpacing)
