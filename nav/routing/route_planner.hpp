@@ -6,8 +6,8 @@
 
 #include "core/geometry/pose.hpp"
 #include "core/geometry/scan_points.hpp"
-#include "nav/passages/narrow_passage.hpp"
 #include "nav/routing/ground_registration.hpp"
+#include "nav/routing/narrow_passage.hpp"
 #include "nav/routing/route_line.hpp"
 #include "nav/routing/route_search.hpp"
 #include "nav/routing/scan_profile.hpp"

@@ -244,5 +244,18 @@ TEST(NarrowPassage, FarBeforeItWhatBlocksIsAheadOfTheRobot) {
   EXPECT_NEAR(planner.map().blocked_places().front().x, 3.4, 0.1);
 }
 
+TEST(NarrowPassage, WhatBlocksBehindItLeavesItOpen) {
+  RoutePlanner planner(wheeled());
+  set_hall(planner, 27, 33);
+  RouteFollower route_follower;
+  RouteRequest request{.place = {4.4, 3.0, 0}, .goal = {9, 3.0, 0}};
+  EXPECT_TRUE(route_follower.step(planner, request).passage);
+  request.ask = RouteAsk::around;
+  request.blocked_ahead = 3.0;
+  route_follower.step(planner, request);
+  ASSERT_EQ(planner.map().blocked_places().size(), 1u);
+  EXPECT_NEAR(planner.map().blocked_places().front().x, 7.4, 0.2);
+}
+
 }  // namespace
 }  // namespace adit::nav::test

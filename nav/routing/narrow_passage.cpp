@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/passages/narrow_passage.hpp"
+#include "nav/routing/narrow_passage.hpp"
 
 #include <cmath>
 #include <vector>
