@@ -29,6 +29,30 @@ std::size_t at(int row, int column) {
   return static_cast<std::size_t>(row * LidarRangeImage::kColumns + column);
 }
 
+using Columns = std::array<bool, LidarRangeImage::kColumns>;
+
+// The columns in which a ring that has returns in `row` has some. A body that tilts during the sweep makes
+// the ring drift over the rows: it is followed, over gaps of a few columns.
+Columns follow_ring(const LidarRangeImage& rays, int row) {
+  constexpr int kGap = 3;
+  Columns seen{};
+  for (const int way : {1, -1}) {
+    int here = row, gap = kGap + 1;
+    for (int n = 0; n < 2 * LidarRangeImage::kColumns; ++n) {
+      const int column = way * n;
+      const auto hit = [&](int r) { return !rays.empty_at(r, column); };
+      int found = hit(row) ? row : -1;
+      if (found < 0 && gap <= kGap)
+        found = hit(here) ? here : hit(here - 1) ? here - 1 : hit(here + 1) ? here + 1 : -1;
+      gap = found < 0 ? gap + 1 : 0;
+      if (found < 0) continue;
+      here = std::clamp(found, 1, LidarRangeImage::kRows - 2);
+      seen[column & (LidarRangeImage::kColumns - 1)] = true;
+    }
+  }
+  return seen;
+}
+
 }  // namespace
 
 Drops::Drops(const Geometry& geometry, const GroundGrid& ground)
@@ -73,7 +97,7 @@ void Drops::vote(int index, float range, Cue cue, const GroundGrid& ground) {
     odds = std::min(odds + kRay, kMaxOdds);
     rays_below_[place] = static_cast<std::uint8_t>(std::min(rays_below_[place] + 1, 255));
   } else if (range <= kMissingReturnsRange || has_cue(index, ground)) {
-    odds = std::min(odds + 3 * kRay, kMaxOdds);
+    odds = std::min(odds + (cue == Cue::missing ? kMissingReturns * kRay : kRay), kMaxOdds);
   } else {
     odds = std::max(odds, std::min(odds + kRay, kSlows));
   }
@@ -118,7 +142,8 @@ Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, 
     if (r < kNearest || (back > 0 && ground.measured(index_at(r)))) break;
   }
   if (back > edge_cells_ && range > geometry_.sure) return Cue::none;
-  if (range > geometry_.sure || (cue == Cue::ray && under_ground(view, ray, range, end * length, ground)))
+  const bool ray_below = cue == Cue::ray;
+  if (ray_below && (range > geometry_.sure || under_ground(view, ray, range, end * length, ground)))
     cue = Cue::doubtful;
   int last = -1;
   for (int n = 0; n < back; ++n) {
@@ -132,14 +157,16 @@ Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, 
 void Drops::below(const View& view, const Eigen::Vector3f& point, const GroundGrid& ground) {
   const Eigen::Vector3f ray = point - view.sensor;
   const float range = ray.head<2>().norm();
-  // A return that is not lower than the ground around the robot lies behind something higher. A return below
-  // an obstacle may be its reflection in wet ground or glass.
+  // A return that is not lower than the ground around the robot lies behind something higher, whose foot was
+  // not seen: the ground between is not known. A return below an obstacle may be its reflection in wet ground
+  // or glass.
+  if (ground.below_plane(point) <= geometry_.depth) return;
   const auto solid_at = [&](float r) {
     const Eigen::Vector2f p = point.head<2>() + (r - range) / range * ray.head<2>();
     return ground.inside(p.x(), p.y()) && solid_[ground.window(p.x(), p.y())] != 0;
   };
   const bool under_solid = solid_at(range) || solid_at(range + GroundGrid::kCell);
-  const Cue cue = !under_solid && ground.below_plane(point) > geometry_.depth ? Cue::ray : Cue::doubtful;
+  const Cue cue = under_solid ? Cue::doubtful : Cue::ray;
   if (ray.z() > -0.01f) return;
   const Cue passed = pass(view, ray, 1.0f, cue, ground);
   // There is no ground at the place of the return either.
@@ -170,6 +197,7 @@ void Drops::count_missing_returns(const View& view, const LidarRangeImage& rays,
       returned_[at(row, c)] |= static_cast<std::uint8_t>(hit);
     }
     if (count == 0) continue;
+    const Columns seen = count < kRing ? Columns{} : follow_ring(rays, row);
     for (int c = 0; c < LidarRangeImage::kColumns; ++c) {
       const int own = column_[c];
       std::uint8_t& missing = missing_returns_[at(row, c)];
@@ -178,7 +206,9 @@ void Drops::count_missing_returns(const View& view, const LidarRangeImage& rays,
         continue;
       }
       if (!returned_[at(row, own)]) continue;
-      bool lonely = count < kRing;  // A ring on the border of two rows flickers, and a single ray may fail.
+      // A ring on the border of two rows flickers, one that drifts is in another row, and a single ray may
+      // fail.
+      bool lonely = count < kRing || seen[own];
       for (int r = row - 1; r <= row + 1; ++r)
         for (int k = own - 1; k <= own + 1; ++k) lonely |= !rays.empty_at(r, k);
       if (lonely) {
@@ -190,7 +220,7 @@ void Drops::count_missing_returns(const View& view, const LidarRangeImage& rays,
       const Eigen::Vector2f way = LidarRangeImage::direction_of(own);
       const Eigen::Vector3f ray =
           view.turn * Eigen::Vector3f(way.x(), way.y(), LidarRangeImage::tangent_of(row));
-      if (ray.z() < -kGrazing * ray.head<2>().norm()) pass(view, ray, farthest_, Cue::doubtful, ground);
+      if (ray.z() < -kGrazing * ray.head<2>().norm()) pass(view, ray, farthest_, Cue::missing, ground);
     }
   }
 }

@@ -51,9 +51,9 @@ class Drops {
   std::span<const Cell> cells() const { return cells_; }
 
  private:
-  /// Evidence that a ray gives for a drop. `doubtful`: a missing return, or a return below measured ground,
-  /// as a mirrored ray gives.
-  enum class Cue { none, ray, doubtful };
+  /// Evidence that a ray gives for a drop. `missing`: returns that were missing in several scans; `doubtful`:
+  /// a return below measured ground or an obstacle, as a mirrored ray gives.
+  enum class Cue { none, ray, missing, doubtful };
   /// Votes for a drop where a ray passed the ground's height. Returns the cue that the ray gives, or none.
   Cue pass(const View& view, const Eigen::Vector3f& ray, float end, Cue cue, const GroundGrid& ground);
   /// Whether a ray that passed the ground's height at `range` continued below measured ground or below an

@@ -132,6 +132,16 @@ TEST(TerrainLayers, TheEdgeOfADropIsWhereTheGroundEnds) {
   }
 }
 
+// The floor behind it is as high as where the robot came from.
+TEST(TerrainLayers, TheEdgeAtTheTopOfARampIsADrop) {
+  Climber robot(wheeled(), [](double x, double) { return x > 4 ? 0.0 : 0.15 * std::max(0.0, x); });
+  robot.spatial = true;
+  robot.pose.x = -1;
+  robot.drive_to(3.0);
+  EXPECT_GT(robot.blocked(3.7, 4.3, -0.5, 0.5), 5);
+  EXPECT_EQ(robot.blocked(1.0, 3.7, -0.5, 0.5), 0);
+}
+
 TEST(TerrainLayers, AHoleIsADropWithOrWithoutABottom) {
   for (const double bottom : {-0.7, HeightWorld::kBottomless}) {
     const auto hole = [=](double x, double y) {

@@ -104,6 +104,35 @@ TEST(TerrainTilt, FindsEveryEdgeFromTwoMetres) {
   EXPECT_EQ(found, 40);
 }
 
+/// A sweep at whose begin and end the body pitches by up to `pitch` (rad), in the frame of its middle: behind
+/// the robot each ring is at another elevation than ahead.
+std::vector<Eigen::Vector3f> scan_while_pitching(const HeightWorld& world, const Platform& platform,
+                                                 double pitch, std::mt19937& random) {
+  constexpr int kParts = 64;
+  std::vector<Eigen::Vector3f> points;
+  for (int part = 0; part < kParts; ++part) {
+    const double share = std::max(0.0, 2.0 * std::fabs(2.0 * part / kParts - 1.0) - 1.0);
+    const Eigen::Quaterniond then = attitude(0, pitch * share, 0);
+    for (const Eigen::Vector3f& p : world.scan(platform, {{0, 0, 0}, then}, 16, 512, 0.01, random)) {
+      const double sector = (std::atan2(p.y(), p.x()) / M_PI + 1.0) / 2.0 * kParts;
+      if (static_cast<int>(sector) == part) points.push_back(then.cast<float>() * p);
+    }
+  }
+  return points;
+}
+
+TEST(TerrainTilt, RingsThatDriftDuringASweepMakeNoDrop) {
+  const Platform platform = wheeled();
+  TerrainMap map(platform);
+  const HeightWorld world{[](double, double) { return 0.0; }};
+  std::mt19937 random(5);
+  for (int i = 0; i < 10; ++i) {
+    map.add_scan(scan_while_pitching(world, platform, i < 3 ? 0.0 : 0.05, random), Pose3{}, 0.1 * i);
+    for (const TerrainCell& cell : map.cells())
+      ASSERT_TRUE(cell.cost < 1 || cell.layer != Layer::drop) << i << ": " << cell.x << ' ' << cell.y;
+  }
+}
+
 // Rays that a car's paint mirrored end far below ground that other rays measured.
 TEST(TerrainTilt, AMirrorMakesNoDrop) {
   const Platform platform = wheeled();
