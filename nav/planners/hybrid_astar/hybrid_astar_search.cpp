@@ -257,7 +257,9 @@ bool HybridAStarSearch::find(const DistanceField& field, const CostToGo& cost_to
   path.tight = task.tight;
   path.through = false;
   tight_ = task.tight;
-  depth_ = tight_ || task.passage ? field.points().depth(outline_, {base_, 0, 0}) + kDeeper / 2 : 0.0f;
+  depth_ = tight_ || task.passage ? field.points().depth(outline_, {base_, 0, 0}) : 0.0f;
+  // What is inside the body itself may come no deeper.
+  if (depth_ < static_cast<float>(kTightMargin)) depth_ += kDeeper / 2;
   if (++round_ == 0) {  // The round counter wrapped: all old marks are invalid.
     std::fill(closed_.begin(), closed_.end(), 0);
     round_ = 1;
