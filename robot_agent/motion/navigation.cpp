@@ -192,6 +192,12 @@ double Navigation::distance_to_goal(const Pose2& pose) const {
   return (frames_.to_odom(Eigen::Vector2d(go->goal.head<2>())) - pose.position()).norm();
 }
 
+Pose2 Navigation::resting_place() const {
+  const Twist2& moves = frames_.twist();
+  const double brakes_s = std::hypot(moves.vx, moves.vy) / (2.0 * params_.platform.max_acceleration);
+  return frames_.T_odom_base().planar() * Pose2{moves.vx * brakes_s, moves.vy * brakes_s, 0};
+}
+
 bool Navigation::is_current(std::uint64_t generation, Time now) const {
   const auto* go = std::get_if<GoTo>(&motion_);
   if (generation == goal_generation_) return true;
@@ -412,6 +418,8 @@ void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
   const double tolerance = go.tolerance > 0 ? go.tolerance : kTolerance;
   bool arrived = plan.arrived && drives && job.target.last && job.generation == goal_generation_ &&
                  distance_to_goal(job.pose) < tolerance + kGoalMoved &&
+                 distance_to_goal(resting_place()) <=
+                     std::max(tolerance, distance_to_goal(frames_.T_odom_base().planar())) &&
                  std::fabs(height_left().value_or(0.0)) < kAtHeight;
   if (arrived && go.yaw && params_.platform.turns_on_spot()) {
     nav::Plan turn{.stamp_s = plan.stamp_s, .turn_first = true, .pose_count = 2};

@@ -68,7 +68,7 @@ class NavigationTest : public testing::Test {
     scheduler.run_until(elapsed);
   }
   void odometry(const Pose2& pose) {
-    EXPECT_TRUE(frames.update(Pose3::level(pose, 0), {}, ++stamp, strand->now()));
+    EXPECT_TRUE(frames.update(Pose3::level(pose, 0), twist, ++stamp, strand->now()));
   }
 
   /// One tenth of a second in which the scan and the plan are made at `seen`, and the robot is at `stands`
@@ -97,6 +97,7 @@ class NavigationTest : public testing::Test {
   std::unique_ptr<Runtime> machine{scheduler.machine("robot", 1h)};
   std::shared_ptr<Executor> strand{machine->strand("command")};
   Frames frames;
+  Twist2 twist{};  ///< Of the odometry.
   std::uint64_t stamp{};
   Twist2 velocity{};
   Progress progress{};
@@ -341,6 +342,18 @@ TEST_F(NavigationTest, AGoalThatMovesWithTheMapIsTheSameGoal) {
   EXPECT_EQ(router.last->generation, goal);
   EXPECT_EQ(router.last->goal->head<2>(), Eigen::Vector2d(6, 0.5));
   EXPECT_GT(velocity.vx, 0.3);
+}
+
+TEST_F(NavigationTest, ARobotThatPassesItsGoalHasNotArrived) {
+  router.answer = ScriptedRouter::along({-0.2, 0, 0}, true, 0.2);
+  go({-0.2, 0});
+  twist.vx = 0.6;
+  for (int i = 0; i < 5; ++i) cycle({}, {});
+  EXPECT_FALSE(progress.arrived) << "it comes to rest 0.38 m from the goal";
+  EXPECT_TRUE(velocity.zero());
+  twist.vx = 0;
+  for (int i = 0; i < 5; ++i) cycle({}, {});
+  EXPECT_TRUE(progress.arrived);
 }
 
 TEST_F(NavigationTest, TurnsToTheHeadingOfItsGoalBeforeItArrives) {
