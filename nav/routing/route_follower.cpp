@@ -117,7 +117,7 @@ void RouteFollower::look_around(RoutePlanner& planner, const RouteRequest& reque
   const double ahead = std::max(kReachAhead, request.blocked_ahead);
   Eigen::Vector3d there = point_at(route_.points, ahead, end);
   const Eigen::Vector2d to = passage_ ? (passage_->middle - request.place).head<2>() : Eigen::Vector2d(0, 0);
-  // What blocks a robot well behind the passage is not the passage.
+  // An obstacle well behind the passage does not close it.
   const bool in_passage = to.norm() < std::max(kAtPassage, ahead) && ahead < to.norm() + kBeyondPassage;
   if (passage_ && in_passage && to.dot(passage_->axis) > 0) {
     there = passage_->middle;

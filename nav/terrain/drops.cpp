@@ -12,6 +12,7 @@ constexpr float kDropMemory = 20.0f;  ///< Lifetime of a drop that could be seen
 constexpr int kMissingReturns = 3;
 /// Evidence of one ray below the ground: one of three may be a reflection, log-odds.
 constexpr float kRay = 0.75f;
+constexpr float kMissing = 3 * kRay;          ///< Evidence of returns that are missing, log-odds.
 constexpr float kBelieved = 2.2f;             ///< The log-odds of Drops::kBlocks.
 constexpr float kSlows = 1.7f;                ///< Limit for missing returns without a second cue.
 constexpr float kMinReported = 1.4f;          ///< Below this, a single ray, a cell is noise.
@@ -22,6 +23,7 @@ constexpr float kNearest = 0.3f;              ///< Nearer cells are not judged, 
 constexpr float kMissingReturnsRange = 2.0f;  ///< Up to this range missing returns alone make a drop, m.
 /// Rays at a flatter angle may not return from wet asphalt.
 constexpr float kGrazing = 0.125f;
+constexpr float kSparse = 0.03f;  ///< Rings farther apart leave rows empty between them, tangent.
 /// Minimum number of columns with returns in a ring.
 constexpr int kRing = LidarRangeImage::kColumns * 3 / 8;
 
@@ -31,22 +33,24 @@ std::size_t at(int row, int column) {
 
 using Columns = std::array<bool, LidarRangeImage::kColumns>;
 
-// The columns in which a ring that has returns in `row` has some. A body that tilts during the sweep makes
-// the ring drift over the rows: it is followed, over gaps of a few columns.
+// Columns in which the ring of a row returns, in that row or in higher ones to which it drifted while the
+// body tilted. Only sparse rings are followed, and only upwards: beside a hole, another ring would be taken
+// for it.
 Columns follow_ring(const LidarRangeImage& rays, int row) {
-  constexpr int kGap = 3;
+  constexpr int kGap = 3;  // Columns without a return that a ring may have.
   Columns seen{};
-  for (const int way : {1, -1}) {
-    int here = row, gap = kGap + 1;
+  for (const int direction : {1, -1}) {
+    int ring_row = row, gap = kGap + 1;
     for (int n = 0; n < 2 * LidarRangeImage::kColumns; ++n) {
-      const int column = way * n;
-      const auto hit = [&](int r) { return !rays.empty_at(r, column); };
+      const int column = direction * n;
+      const auto hit = [&](int r) { return r >= row && !rays.empty_at(r, column); };
       int found = hit(row) ? row : -1;
       if (found < 0 && gap <= kGap)
-        found = hit(here) ? here : hit(here - 1) ? here - 1 : hit(here + 1) ? here + 1 : -1;
+        for (const int r : {ring_row, ring_row - 1, ring_row + 1})
+          if (found < 0 && hit(r)) found = r;
       gap = found < 0 ? gap + 1 : 0;
       if (found < 0) continue;
-      here = std::clamp(found, 1, LidarRangeImage::kRows - 2);
+      ring_row = std::min(found, LidarRangeImage::kRows - 2);
       seen[column & (LidarRangeImage::kColumns - 1)] = true;
     }
   }
@@ -97,7 +101,7 @@ void Drops::vote(int index, float range, Cue cue, const GroundGrid& ground) {
     odds = std::min(odds + kRay, kMaxOdds);
     rays_below_[place] = static_cast<std::uint8_t>(std::min(rays_below_[place] + 1, 255));
   } else if (range <= kMissingReturnsRange || has_cue(index, ground)) {
-    odds = std::min(odds + (cue == Cue::missing ? kMissingReturns * kRay : kRay), kMaxOdds);
+    odds = std::min(odds + (cue == Cue::missing ? kMissing : kRay), kMaxOdds);
   } else {
     odds = std::max(odds, std::min(odds + kRay, kSlows));
   }
@@ -141,7 +145,8 @@ Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, 
     const float r = range - static_cast<float>(back) * GroundGrid::kCell;
     if (r < kNearest || (back > 0 && ground.measured(index_at(r)))) break;
   }
-  if (back > edge_cells_ && range > geometry_.sure) return Cue::none;
+  if (back > edge_cells_ && (range > geometry_.sure || cue == Cue::level)) return Cue::none;
+  if (cue == Cue::level) cue = Cue::doubtful;
   const bool ray_below = cue == Cue::ray;
   if (ray_below && (range > geometry_.sure || under_ground(view, ray, range, end * length, ground)))
     cue = Cue::doubtful;
@@ -157,16 +162,17 @@ Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, 
 void Drops::below(const View& view, const Eigen::Vector3f& point, const GroundGrid& ground) {
   const Eigen::Vector3f ray = point - view.sensor;
   const float range = ray.head<2>().norm();
-  // A return that is not lower than the ground around the robot lies behind something higher, whose foot was
-  // not seen: the ground between is not known. A return below an obstacle may be its reflection in wet ground
-  // or glass.
-  if (ground.below_plane(point) <= geometry_.depth) return;
+  // A return that is not lower than the ground around the robot lies behind something higher. A return below
+  // an obstacle may be its reflection in wet ground or glass.
   const auto solid_at = [&](float r) {
     const Eigen::Vector2f p = point.head<2>() + (r - range) / range * ray.head<2>();
     return ground.inside(p.x(), p.y()) && solid_[ground.window(p.x(), p.y())] != 0;
   };
   const bool under_solid = solid_at(range) || solid_at(range + GroundGrid::kCell);
-  const Cue cue = under_solid ? Cue::doubtful : Cue::ray;
+  const float depth = ground.below_plane(point);
+  const Cue cue = depth <= 0                                ? Cue::level
+                  : under_solid || depth <= geometry_.depth ? Cue::doubtful
+                                                            : Cue::ray;
   if (ray.z() > -0.01f) return;
   const Cue passed = pass(view, ray, 1.0f, cue, ground);
   // There is no ground at the place of the return either.
@@ -197,7 +203,7 @@ void Drops::count_missing_returns(const View& view, const LidarRangeImage& rays,
       returned_[at(row, c)] |= static_cast<std::uint8_t>(hit);
     }
     if (count == 0) continue;
-    const Columns seen = count < kRing ? Columns{} : follow_ring(rays, row);
+    const Columns seen = count >= kRing && geometry_.rings > kSparse ? follow_ring(rays, row) : Columns{};
     for (int c = 0; c < LidarRangeImage::kColumns; ++c) {
       const int own = column_[c];
       std::uint8_t& missing = missing_returns_[at(row, c)];

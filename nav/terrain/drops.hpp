@@ -34,6 +34,7 @@ class Drops {
     float depth;      ///< Minimum depth of a drop, m.
     float sure;       ///< Range up to which a ray that passes the ground's height shows an edge, m.
     float half_body;  ///< Half the body's length, m; shorter gaps are passable.
+    float rings;      ///< Between two rings of the lidar, rad.
   };
   Drops(const Geometry& geometry, const GroundGrid& ground);
   void clear();
@@ -52,8 +53,9 @@ class Drops {
 
  private:
   /// Evidence that a ray gives for a drop. `missing`: returns that were missing in several scans; `doubtful`:
-  /// a return below measured ground or an obstacle, as a mirrored ray gives.
-  enum class Cue { none, ray, missing, doubtful };
+  /// a return below measured ground or an obstacle, as a mirrored ray gives, or beyond `sure`; `level`: a
+  /// return no lower than the ground around the robot, doubtful behind measured ground and none elsewhere.
+  enum class Cue { none, ray, missing, doubtful, level };
   /// Votes for a drop where a ray passed the ground's height. Returns the cue that the ray gives, or none.
   Cue pass(const View& view, const Eigen::Vector3f& ray, float end, Cue cue, const GroundGrid& ground);
   /// Whether a ray that passed the ground's height at `range` continued below measured ground or below an

@@ -71,7 +71,7 @@ TerrainMap::TerrainMap(const Platform& platform, double range)
       ground_(ground_params(platform, range)),
       obstacles_(body_, range),
       drops_({static_cast<float>(limits_.drop), static_cast<float>(sure_range(platform)),
-              static_cast<float>(platform.length / 2)},
+              static_cast<float>(platform.length / 2), static_cast<float>(ring_angle(platform))},
              ground_),
       surface_(surface_params(platform), ground_.side()),
       solid_(ground_.cells(), 0),

@@ -13,6 +13,7 @@ constexpr double kTurnLooksAhead = 0.6;
 constexpr double kTurningSpeed = 0.05;    // Speed for a stick that only turns, m/s.
 constexpr Duration kAnswerDeadline = 2s;  // Of planner and router; one that hangs is replaced earlier.
 constexpr double kBorderRange = 5.0;      // Of the areas' border that planner and monitor see, m.
+constexpr double kRestsOff = 0.01;        // Of a robot that moves only by the noise of its odometry, m.
 constexpr double kGoalMoved = 0.05;       // Shift of the goal by a correction of the map, m.
 constexpr double kCrawls = 0.05;          // A robot with a lower speed limit is to stand, m/s.
 constexpr double kAtHeight = 0.2;         // Greatest error of the height of a goal, m.
@@ -419,7 +420,7 @@ void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
   bool arrived = plan.arrived && drives && job.target.last && job.generation == goal_generation_ &&
                  distance_to_goal(job.pose) < tolerance + kGoalMoved &&
                  distance_to_goal(resting_place()) <=
-                     std::max(tolerance, distance_to_goal(frames_.T_odom_base().planar())) &&
+                     std::max(tolerance, distance_to_goal(frames_.T_odom_base().planar())) + kRestsOff &&
                  std::fabs(height_left().value_or(0.0)) < kAtHeight;
   if (arrived && go.yaw && params_.platform.turns_on_spot()) {
     nav::Plan turn{.stamp_s = plan.stamp_s, .turn_first = true, .pose_count = 2};

@@ -91,7 +91,7 @@ class Navigation : public Component, public NavigationInput {
  private:
   /// Distance from `pose` to the goal requested last, m; that goal moves with a correction of the map.
   double distance_to_goal(const Pose2& pose) const;
-  // Where the robot comes to rest if it brakes now, odometry frame.
+  /// Place where the robot comes to rest at the earliest if it brakes now, odometry frame, m.
   Pose2 resting_place() const;
   /// Whether `step_` leads to the goal requested last, or to the one before that it continues.
   bool is_current(std::uint64_t generation, Time now) const;

@@ -94,19 +94,6 @@ TEST_F(ExploreModeTest, DrivesFromPlaceToPlaceAndHoldsWhenNothingIsLeft) {
   EXPECT_EQ(begun, 1) << "only the first question begins an exploration";
 }
 
-TEST_F(ExploreModeTest, WhatBlocksItIsInItsState) {
-  ASSERT_TRUE(behaviour.request_explore({}, now));
-  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
-  EXPECT_EQ(behaviour.view().goal_state, GoalState::none);
-  behaviour.set_progress({.blocked = true, .reason = Reason::blocked});
-  run(100ms);
-  EXPECT_EQ(behaviour.view().goal_state, GoalState::blocked);
-  EXPECT_EQ(behaviour.view().reason, Reason::blocked);
-  behaviour.set_progress({});
-  run(100ms);
-  EXPECT_EQ(behaviour.view().goal_state, GoalState::none);
-}
-
 TEST_F(ExploreModeTest, WithoutAnyViewpointItIsNeverDone) {
   ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::home}, now));
   see(nav::ExploreState::no_viewpoint);

@@ -17,6 +17,7 @@ struct Climber {
   Pose2 pose{};
   double time{0}, noise{0.01};
   bool spatial{false};
+  int rings{16};
   std::mt19937 random{5};
 
   Climber(const Platform& p, std::function<double(double, double)> ground)
@@ -25,8 +26,8 @@ struct Climber {
   void look(int scans = 1) {
     for (int i = 0; i < scans; ++i, time += 0.1) {
       const Pose3 body = Pose3::level(pose, world.ground(pose.x, pose.y));
-      map.add_scan(world.scan(platform, body, 16, 450, noise, random), spatial ? body : Pose3::level(pose, 0),
-                   time);
+      map.add_scan(world.scan(platform, body, rings, 450, noise, random),
+                   spatial ? body : Pose3::level(pose, 0), time);
     }
   }
   void drive_to(double x) {
@@ -153,6 +154,20 @@ TEST(TerrainLayers, AHoleIsADropWithOrWithoutABottom) {
     EXPECT_GT(robot.blocked(1.9, 2.4, -0.4, 0.4), 5) << bottom;
     EXPECT_EQ(robot.blocked(0.5, 1.8, -2, 2), 0) << bottom;
     EXPECT_EQ(robot.blocked(1.0, 3.5, 0.9, 2), 0) << bottom << ": beside it";
+  }
+}
+
+// With dense rings the ring behind one that ends at an edge may be taken for it.
+TEST(TerrainLayers, AnAbyssIsADropToLidarsOfAnyDensity) {
+  for (const int rings : {16, 32, 64}) {
+    Platform platform = wheeled();
+    platform.lidar_rings = rings;
+    Climber robot(platform, [](double x, double) { return x > 2 ? HeightWorld::kBottomless : 0.0; });
+    robot.rings = rings;
+    robot.pose.x = -2;
+    robot.drive_to(1.3);
+    EXPECT_GT(robot.blocked(1.8, 2.2, -0.5, 0.5), 5) << rings;
+    EXPECT_EQ(robot.blocked(0.5, 1.8, -0.5, 0.5), 0) << rings;
   }
 }
 

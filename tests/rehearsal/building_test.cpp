@@ -5,7 +5,7 @@
 namespace adit::sim {
 namespace {
 
-// Floors that show behind furniture, and rings that drift while tracks turn, were drops beside the door.
+// A floor that shows behind furniture, and rings that drift while tracks turn, are no drops beside the door.
 TEST(Building, ATrackedRobotPassesADoorThatLeavesNineCentimetresASide) {
   const std::string places[][3] = {{"[12.932, -0.126, -2.4479]", "7.47 -0.39", "[7.47, -0.39, 0.5]"},
                                    {"[12.869, 0.051, 2.3525]", "8.77 -0.63", "[8.77, -0.63, 0.5]"}};

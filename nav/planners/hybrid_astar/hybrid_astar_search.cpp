@@ -23,7 +23,8 @@ constexpr int kExpansions = 3000;  ///< Maximum number of expanded nodes.
 constexpr float kHeuristicWeight = 1.25f;
 /// A body that starts inside its margin may stay inside for this distance, m.
 constexpr float kLeaving = 0.8f;
-constexpr float kDeeper = 0.01f;  ///< Tolerance, m, for the size of the cells.
+constexpr float kDeeper = 0.01f;    ///< Tolerance, m, for the size of the cells.
+constexpr float kRounding = 1e-4f;  ///< m
 /// A body whose clearance by the cells exceeds the margin by this much is free, m.
 constexpr float kCoarse = 0.05f;
 constexpr double kStraight = 0.25;  ///< The body is straight on the axis this far before a gap, m.
@@ -258,8 +259,8 @@ bool HybridAStarSearch::find(const DistanceField& field, const CostToGo& cost_to
   path.through = false;
   tight_ = task.tight;
   depth_ = tight_ || task.passage ? field.points().depth(outline_, {base_, 0, 0}) : 0.0f;
-  // What is inside the body itself may come no deeper.
-  if (depth_ < static_cast<float>(kTightMargin)) depth_ += kDeeper / 2;
+  // What is inside the body itself may come no deeper, and nothing may come into it.
+  depth_ = std::max(depth_, std::min(depth_ + kDeeper / 2, static_cast<float>(kTightMargin))) + kRounding;
   if (++round_ == 0) {  // The round counter wrapped: all old marks are invalid.
     std::fill(closed_.begin(), closed_.end(), 0);
     round_ = 1;

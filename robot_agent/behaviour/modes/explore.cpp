@@ -64,16 +64,6 @@ void ExploreMode::tick(bool passes, Time now) {
     context_.output.write(Stand{}, now);
 }
 
-ModeProgress ExploreMode::progress(bool passes) const {
-  ModeProgress progress{.finished = is_over(),
-                        .exploration = active_ || is_over() ? view_ : contract::Exploration{}};
-  if (!passes || !goal_ || navigated_.reason == Reason::none) return progress;
-  progress.state = GoalState::blocked;
-  progress.reason = navigated_.reason;
-  progress.goal = {goal_->x(), goal_->y(), std::isfinite(goal_->z()) ? goal_->z() : 0.0};
-  return progress;
-}
-
 void ExploreMode::ask(Time now) {
   if (asked_ && now - *asked_ < kAnswerLost) return;
   if (last_asked_ && now - *last_asked_ < kAskPeriod) return;

@@ -29,7 +29,9 @@ class ExploreMode : public ModeModule {
   void tick(bool passes, Time now) override;
   void set_exploration(const ExploreRequest& request) override;
   void navigated(const Progress& progress) override { navigated_ = progress; }
-  ModeProgress progress(bool passes) const override;
+  ModeProgress progress(bool) const override {
+    return {.finished = is_over(), .exploration = active_ || is_over() ? view_ : contract::Exploration{}};
+  }
   void store(StoredBehaviour& stored) const override;
   void restore(const StoredBehaviour& stored) override;
 
