@@ -74,8 +74,9 @@ StationOptions Station::options() const {
 }
 
 void Station::on_change(std::function<void()> poke) {
-  const std::lock_guard guard(mutex_);
+  std::unique_lock guard(mutex_);
   poke_ = std::move(poke);
+  poked_through_.wait(guard, [this] { return pokes_running_ == 0; });
 }
 
 Changes Station::take() {
@@ -189,8 +190,13 @@ void Station::poke(std::unique_lock<std::mutex>& guard) {
     poked_ = true;
     call = poke_;
   }
+  if (call) ++pokes_running_;
   guard.unlock();
-  if (call) call();
+  if (!call) return;
+  call();
+  const std::lock_guard ended(mutex_);
+  --pokes_running_;
+  poked_through_.notify_all();
 }
 
 void Station::end(Done done, CommandOutcome outcome, std::unique_lock<std::mutex>& guard) {

@@ -7,6 +7,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <fstream>
@@ -212,6 +213,24 @@ TEST_F(ClientTest, TheThreadOfAStopEndsBeforeItsStation) {
   station_.reset();
   gone.set_value();
   EXPECT_TRUE(first.get_future().get());
+}
+
+TEST_F(ClientTest, AFunctionThatWasReplacedIsNotRunningAnyMore) {
+  ASSERT_TRUE(owner_->until([&] { return owner_->all().world; }));
+  std::promise<void> entered, replaced;
+  std::atomic<bool> called{false}, returned{false};
+  station_->on_change([&] {
+    if (called.exchange(true)) return;
+    entered.set_value();
+    replaced.get_future().wait_for(100ms);
+    returned = true;
+  });
+  station_->take();
+  station_->execute("list", {});
+  entered.get_future().wait();
+  station_->on_change({});
+  EXPECT_TRUE(returned);
+  replaced.set_value();
 }
 
 TEST_F(ClientTest, ManyStopsAtOnceAreSentButNotWithoutLimit) {
