@@ -70,8 +70,8 @@ class Station {
   Link link() const;
 
   /// Sets the function that is called when there is something to take(): from any thread, and not again
-  /// before take(). When this returns, the function that was set before is not running and is not called again;
-  /// hence not to be called from inside it.
+  /// before take(). When this returns, the function that was set before is not running and is not called
+  /// again; hence not to be called from inside it.
   void on_change(std::function<void()> poke);
   /// Returns all changes since the last call, and calls the `done` of requests that ended. For the owner's
   /// thread.
@@ -147,7 +147,7 @@ class Station {
   Clock::time_point heard_{Clock::now()};
   Changes changes_{};
   std::function<void()> poke_{};
-  int pokes_running_{0};                      ///< Calls of `poke_` that have not returned.
+  int pokes_running_{0};                     ///< Calls of `poke_` that have not returned.
   std::condition_variable poked_through_{};  ///< When `pokes_running_` falls.
   bool poked_{false};
   RequestId next_{1};
