@@ -45,11 +45,12 @@ Agent::Impl::Impl(const AgentParams& agent_params, Runtime& agent_runtime)
       router(agent_runtime, router_unit()),
       sensors(agent_runtime, sensors_unit()),
       map(agent_runtime, map_unit()),
+      stairs(agent_runtime, stairs_unit()),
       watch_strand(agent_runtime.strand("supervisor")) {}
 
 Agent::Impl::~Impl() {
   watch_strand->end();
-  for (Unit* unit : {&command, &sensors, &planner, &router, &map}) unit->end();
+  for (Unit* unit : {&command, &sensors, &planner, &router, &map, &stairs}) unit->end();
   end_disk();
   if (watch) watch->stop();
   if (context && context->radio) context->radio->close();
@@ -93,6 +94,14 @@ UnitParams Agent::Impl::map_unit() {
             return std::make_unique<MapPart>(MapParams{}, strand, Log(params.log, params.name),
                                              context->map_insertion);
           }};
+}
+
+UnitParams Agent::Impl::stairs_unit() {
+  return {
+      .name = "stairs", .dedicated = true, .make = [this](Executor& strand) -> std::unique_ptr<Component> {
+        return std::make_unique<StairsPart>(StairsParams{.eye = params.platform.lidar_origin()}, strand,
+                                            Log(params.log, params.name), context->stairs_search);
+      }};
 }
 
 UnitParams Agent::Impl::sensors_unit() {
@@ -197,8 +206,11 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
 
   const bool routes_it = params.platform.router != "none";
   const bool maps_it = params.perception == PerceptionLevel::slam;
-  for (Unit* unit : {&planner, &router, &sensors, &map})
-    if ((unit != &router || routes_it) && (unit != &map || maps_it))
+  e.stairs = params.perception != PerceptionLevel::off
+                 ? std::make_unique<StairsReporter>(params.name, *e.findings)
+                 : nullptr;
+  for (Unit* unit : {&planner, &router, &sensors, &map, &stairs})
+    if ((unit != &router || routes_it) && (unit != &map || maps_it) && (unit != &stairs || e.stairs))
       if (const auto opened = unit->open(); !opened) return opened.error();
   if (maps_it) open_map();
   if (params.carry_maps) e.carrier = std::make_unique<Carrier>(Random(params.seed).fork(kCarrySalt).next());
@@ -221,6 +233,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (routes_it) watch->watch(router, {.name = "router"});
   watch->watch(sensors, {.name = "sensors"});
   if (maps_it) watch->watch(map, {.name = "map"});
+  if (e.stairs) watch->watch(stairs, {.name = "stairs"});
   if (params.disk) watch->note(store_health(false));
   return e.radio->listen(
       {e.directory, e.namesakes,
@@ -327,8 +340,9 @@ FindingSource::Outputs Agent::Impl::findings_outputs() {
 }
 
 Unit* Agent::Impl::find(const std::string& component) {
-  for (Unit* unit : {&command, &planner, &router, &sensors, &map})
-    if (unit->name() == component && (unit != &router || context->router) && (unit != &map || context->map))
+  for (Unit* unit : {&command, &planner, &router, &sensors, &map, &stairs})
+    if (unit->name() == component && (unit != &router || context->router) && (unit != &map || context->map) &&
+        (unit != &stairs || context->stairs))
       return unit;
   return nullptr;
 }

@@ -31,7 +31,7 @@ struct Agent::Impl {
   Runtime& runtime;
   wire::Participant* robot_wire{};
   std::unique_ptr<Context> context{};
-  Unit command, planner, router, sensors, map;
+  Unit command, planner, router, sensors, map, stairs;
   std::shared_ptr<Strand> watch_strand;
   std::shared_ptr<Strand> disk_strand{};  ///< Null: there is no disk, or its writes take no time.
   std::unique_ptr<AgentSupervisor> watch{};
@@ -53,6 +53,7 @@ struct Agent::Impl {
   UnitParams router_unit();
   UnitParams sensors_unit();
   UnitParams map_unit();
+  UnitParams stairs_unit();
 };
 
 }  // namespace adit::agent

@@ -194,7 +194,10 @@ void Agent::CommandComponent::odometry(const Pose3& odom, const Twist2& twist, s
 
 void Agent::CommandComponent::located(std::shared_ptr<Scan> scan, const LidarScan& lidar) {
   if (lidar.odometry) watch_grip(*lidar.odometry, now());
-  if (localiser_.recognised()) add_to_map(scan);
+  if (localiser_.recognised()) {
+    add_to_map(scan);
+    seek_stairs(scan);
+  }
   navigation_.add_scan(std::move(scan), lidar.received, now(), team(now()));
 }
 
@@ -469,6 +472,26 @@ void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan
   if (!job) return;
   call(context_.map_insertion, std::move(job), {.deadline = 2s},
        [this](const Result<MapStep>& step) { context_.map->taken(step, frames_.map_frame()); });
+}
+
+void Agent::CommandComponent::seek_stairs(const std::shared_ptr<const Scan>& scan) {
+  const Localisation health = localiser_.health(now());
+  if (!context_.stairs || scan->planar || health == Localisation::lost || health == Localisation::starting)
+    return;
+  if (scans_for_stairs_++ % 2 != 0) return;
+  auto job = std::make_shared<StairsJob>(StairsJob{scan, team(now()), frames_.odom_epoch(), now()});
+  call(context_.stairs_search, std::shared_ptr<const StairsJob>(std::move(job)), {.deadline = 2s},
+       [this](const Result<StairsStep>& step) {
+         if (!step || step->odom_epoch != frames_.odom_epoch()) return;
+         const Pose3 T_map_odom = frames_.map_frame().T_map_odom;
+         for (Staircase stairs : step->stairs) {
+           stairs.foot = T_map_odom * stairs.foot;
+           stairs.heading = wrap_angle(stairs.heading + T_map_odom.yaw());
+           if (const auto taken = context_.stairs->take(stairs, to_stamp(now())); !taken)
+             context_.notifier->to_all(Severity::warning, "finding_refused", taken.reason(),
+                                       "a staircase: " + taken.error().text);
+         }
+       });
 }
 
 void Agent::CommandComponent::send_content() {

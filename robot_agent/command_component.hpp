@@ -33,6 +33,8 @@
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
 #include "robot_agent/safeguard/safeguards.hpp"
+#include "robot_agent/stairs/stairs_part.hpp"
+#include "robot_agent/stairs/stairs_reporter.hpp"
 #include "robot_agent/state/restored.hpp"
 #include "robot_agent/state/state_keeper.hpp"
 #include "robot_agent/supervisor/agent_supervisor.hpp"
@@ -70,12 +72,14 @@ struct Agent::Context {
   std::unique_ptr<Carrier> carrier{};        ///< Null: this robot carries no maps.
   std::unique_ptr<ContentSender> content{};  ///< Of the findings and the maps.
   MapService map_insertion{"map insertion", 2};
-  AgentSupervisor* watch{};               ///< From any thread.
-  CommandComponent* command_component{};  ///< Null while the command component is not running.
-  std::uint32_t instances{};              ///< Number of instances of the command component so far.
-  wire::Participant* wire{};              ///< The radio domain.
-  wire::Participant* robot_wire{};        ///< The robot domain.
-  wire::RateControl rate{};               ///< Rate of RobotState; the rest of the telemetry follows.
+  StairsService stairs_search{"stairs", 2};
+  std::unique_ptr<StairsReporter> stairs{};  ///< Null: this robot seeks no staircases.
+  AgentSupervisor* watch{};                  ///< From any thread.
+  CommandComponent* command_component{};     ///< Null while the command component is not running.
+  std::uint32_t instances{};                 ///< Number of instances of the command component so far.
+  wire::Participant* wire{};                 ///< The radio domain.
+  wire::Participant* robot_wire{};           ///< The robot domain.
+  wire::RateControl rate{};                  ///< Rate of RobotState; the rest of the telemetry follows.
 };
 
 /// The command component: command interface, behaviour, mux, and the part of navigation without heavy
@@ -127,6 +131,8 @@ class Agent::CommandComponent : public Component {
   void located(std::shared_ptr<Scan> scan, const LidarScan& lidar);
   /// Offers a scan to the map, in the odometry frame.
   void add_to_map(const std::shared_ptr<const Scan>& scan);
+  /// Offers every second scan to the search for staircases, and reports those that it finds.
+  void seek_stairs(const std::shared_ptr<const Scan>& scan);
   /// Sends findings and maps to the stations, or its map to carriers, as the link allows.
   void send_content();
   /// Sends this robot's state to the other robots, when the link allows.
@@ -173,7 +179,8 @@ class Agent::CommandComponent : public Component {
   RateLimit<bool> namesakes_reported_{10s};  // The key is `gives_way_`.
   RateLimit<int> refusals_reported_{10s};    // Under one key: a stranger may invent any number of names.
   BeaconRate beacon_rate_{};
-  std::uint32_t beats_{};    ///< Number of calls of beat().
+  std::uint32_t beats_{};  ///< Number of calls of beat().
+  std::uint32_t scans_for_stairs_{};
   std::uint32_t beacons_{};  ///< Number of beacons sent.
   std::vector<Timer> timers_{};
 };

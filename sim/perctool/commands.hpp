@@ -47,6 +47,15 @@ struct AlignOptions {
 };
 int align(const AlignOptions& options);
 
+struct StairsOptions {
+  std::string clouds{};  ///< File or folder, in base_link: level, the ground under the robot near z = 0.
+  std::string poses{};   ///< TUM, one a cloud; then the clouds are accumulated. Empty: each is judged alone.
+  std::string sensor{};  ///< As of `odometry`: where the lidar was.
+  double eye{0.6};       ///< Height of the lidar without `sensor`, m.
+  bool json{false};
+};
+int stairs(const StairsOptions& options);
+
 struct RecordOptions {
   std::string scenario{}, robot{}, out{};
   std::optional<std::uint64_t> seed{};  ///< Else the scenario's.

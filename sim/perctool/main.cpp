@@ -100,6 +100,26 @@ int main(int argc, char** argv) {
       ->check(adit::config::between(-1e6, 1e6));
   aligns->add_flag("--json", align_options.json, "one JSON object");
 
+  StairsOptions stairs_options;
+  CLI::App* stairs_command =
+      app.add_subcommand("stairs", "staircases in clouds: one line each, none when there is none");
+  stairs_command->footer(
+      "Clouds are in base_link: level, the ground under the robot near z = 0. foot and top are the centres "
+      "of the "
+      "lowest\nand the highest riser; heading points upwards, rad.\n"
+      "Example: perctool stairs scan.pcd --json\n"
+      "Example: perctool stairs climb/ --poses climb.tum --json");
+  stairs_command->add_option("CLOUDS", stairs_options.clouds, "file, or folder of files")->required();
+  stairs_command->add_option("--poses", stairs_options.poses,
+                             "of base_link, TUM, one a cloud: the clouds of 1.5 s are accumulated");
+  CLI::Option* sensor = stairs_command->add_option("--sensor", stairs_options.sensor,
+                                                   "YAML file with the sensors: part of a platform's");
+  stairs_command->add_option("--lidar-height", stairs_options.eye, "above the ground, m")
+      ->capture_default_str()
+      ->excludes(sensor)
+      ->check(adit::config::between(0.0, 10.0));
+  stairs_command->add_flag("--json", stairs_options.json, "one JSON object a staircase");
+
   RecordOptions record_options;
   std::uint64_t seed = 0;
   CLI::App* records =
@@ -130,6 +150,7 @@ int main(int argc, char** argv) {
   if (*evals) return eval(eval_options);
   if (*odometries) return odometry(odometry_options);
   if (*maps) return map(map_options);
+  if (*stairs_command) return stairs(stairs_options);
   if (*aligns) {
     if (guess.size() == 7) {
       const Eigen::Quaterniond turn(guess[6], guess[3], guess[4], guess[5]);

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// bench_stairs: staircases, and what looks like one, in simulated clouds, as a table.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "bench/nav/calibration.hpp"
+#include "perception/stairs/stairs_detector.hpp"
+#include "tests/perception/stairs/scene.hpp"
+
+namespace {
+
+using namespace adit;
+using namespace adit::bench;
+namespace scenes = perception::scenes;
+
+struct Options {
+  std::size_t cases{150};
+  std::uint64_t first{1};
+  std::vector<double> noise{0.0, 0.01, 0.02, 0.03};  // m
+  std::vector<std::string> rows{"open", "walled", "down", "false"};
+  double tilt{1.0};  // degrees
+  int sweeps{15};
+  bool each{false};
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Row {
+  std::size_t cases{}, found{}, wrong{};
+  std::vector<double> rise{}, run{}, width{}, steps{}, ms{};
+};
+
+bool same(const Staircase& found, const Staircase& truth) {
+  // Along the flight, a step more or less is an error of the count, not another staircase.
+  const Eigen::Vector2d off = (found.foot - truth.foot).head<2>();
+  const Eigen::Vector2d along = truth.direction();
+  return std::abs(wrap_angle(found.heading - truth.heading)) < 0.17 &&
+         std::abs(off.x() * along.y() - off.y() * along.x()) < 0.3 &&
+         std::abs(off.dot(along)) < 1.5 * truth.run && std::abs(found.rise - truth.rise) < 0.02 &&
+         std::abs(found.run - truth.run) < 0.03;
+}
+
+void run_case(const std::string& name, std::uint64_t seed, double noise, const Options& options, Row& row) {
+  Random random = Random(seed).fork(7);
+  scenes::Scene scene;
+  if (name == "false")
+    scene = scenes::not_stairs(seed, random);
+  else
+    scene = scenes::staircase(name == "open"     ? scenes::Row::open
+                              : name == "walled" ? scenes::Row::walled
+                                                 : scenes::Row::down,
+                              random);
+  scenes::Sensing sensing{.sweeps = options.sweeps, .tilt = options.tilt * M_PI / 180.0};
+  sensing.lidar.noise = noise;
+  const scenes::Cloud cloud = scenes::sense(scene, sensing, random);
+  static perception::StairsDetector detector;
+  const double begin = thread_cpu_ms();
+  const std::vector<Staircase> found = detector.detect(cloud.points, cloud.eye);
+  row.ms.push_back(thread_cpu_ms() - begin);
+  ++row.cases;
+  const bool sought = scene.truth.has_value();
+  const Staircase truth = sought ? scenes::seen_from(scene, *scene.truth) : Staircase{};
+  bool hit = false;
+  for (const Staircase& stairs : found) {
+    if (!sought || hit || !same(stairs, truth)) {
+      ++row.wrong;
+    } else {
+      hit = true;
+      row.rise.push_back(std::abs(stairs.rise - truth.rise));
+      row.run.push_back(std::abs(stairs.run - truth.run));
+      row.width.push_back(std::abs(stairs.width - truth.width));
+      row.steps.push_back(std::abs(stairs.steps - truth.steps));
+    }
+    if (options.each)
+      fmt::print(
+          "    foot {:.2f} {:.2f} {:.2f} heading {:.2f} rise {:.3f} run {:.3f} width {:.2f} steps {}\n",
+          stairs.foot.x(), stairs.foot.y(), stairs.foot.z(), stairs.heading, stairs.rise, stairs.run,
+          stairs.width, stairs.steps);
+  }
+  row.found += hit ? 1 : 0;
+  if (options.each && sought)
+    fmt::print(
+        "  {} {}: {} truth foot {:.2f} {:.2f} {:.2f} heading {:.2f} rise {:.3f} run {:.3f} width {:.2f} "
+        "steps {}\n",
+        name, seed, hit ? "ok" : "MISSED", truth.foot.x(), truth.foot.y(), truth.foot.z(), truth.heading,
+        truth.rise, truth.run, truth.width, truth.steps);
+  else if (options.each)
+    fmt::print("  {} {} ({}): {}\n", name, seed, scenes::kNotStairs[seed % scenes::kNotStairs.size()],
+               found.size());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "bench_stairs: staircases, and what looks like one, in simulated clouds of a legged robot's lidar");
+  app.add_option("--cases", options.cases, "a row and noise")->capture_default_str();
+  app.add_option("--first", options.first, "seed")->capture_default_str();
+  app.add_option("--noise", options.noise, "standard deviations of a range, m")->capture_default_str();
+  app.add_option("--rows", options.rows, "open, walled, down, false")->capture_default_str();
+  app.add_option("--tilt", options.tilt, "error of the attitude, degrees")->capture_default_str();
+  app.add_option("--sweeps", options.sweeps, "in a cloud, at 10 Hz")->capture_default_str();
+  app.add_flag("--each", options.each, "print each case");
+  CLI11_PARSE(app, argc, argv);
+  fmt::print("row     noise  found    wrong  rise mm  run mm  width mm  steps  ms median  worst\n");
+  for (const std::string& name : options.rows)
+    for (const double noise : options.noise) {
+      Row row;
+      const std::size_t cases = name == "false" ? 3 * options.cases : options.cases;
+      for (std::size_t n = 0; n < cases; ++n) run_case(name, options.first + n, noise, options, row);
+      fmt::print("{:<7} {:.2f}   {:>3}/{:<4} {:>5}  {:>7.1f} {:>7.1f} {:>9.0f} {:>6.1f} {:>10.2f} {:>6.2f}\n",
+                 name, noise, row.found, row.cases, row.wrong, 1e3 * median(row.rise), 1e3 * median(row.run),
+                 1e3 * median(row.width), median(row.steps), median(row.ms),
+                 *std::max_element(row.ms.begin(), row.ms.end()));
+      std::fflush(stdout);
+    }
+  return 0;
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/stairs/stairs_part.hpp"
+
+#include <utility>
+
+#include "perception/stairs/stairs_detector.hpp"
+
+namespace adit::agent {
+
+std::vector<Eigen::Vector3f> accumulated(std::span<const std::shared_ptr<const StairsJob>> scans) {
+  std::vector<Eigen::Vector3f> points;
+  for (const auto& job : scans) {
+    const auto scan = without_team(job->scan, job->team);
+    const Eigen::Affine3f T_odom_base =
+        (Eigen::Translation3d(scan->located.position) * scan->located.orientation).cast<float>();
+    const std::vector<std::uint8_t> passing = scan->passing();
+    for (std::size_t n = 0; n < scan->points.size(); ++n)
+      if (n >= passing.size() || passing[n] == 0) points.push_back(T_odom_base * scan->points[n]);
+  }
+  return points;
+}
+
+StairsPart::StairsPart(StairsParams params, Executor& strand, Log log, StairsService& service)
+    : Component("stairs", strand, std::move(log), {.beat = 100ms}),
+      params_(params),
+      service_(service),
+      detector_(std::make_shared<perception::StairsDetector>()) {}
+
+Result<void> StairsPart::on_start() {
+  offer(service_, [this](const auto& job, const auto& reply) { take(job, reply); });
+  return {};
+}
+
+bool StairsPart::is_due(const StairsJob& job) const {
+  if (!sought_) return true;
+  return job.made - *sought_ >= params_.period &&
+         (job.scan->located.position - sought_from_).norm() >= params_.least_way;
+}
+
+void StairsPart::take(const std::shared_ptr<const StairsJob>& job, const Reply<StairsStep>& reply) {
+  // Poses before a jump, or of another frame, do not fit.
+  if (!scans_.empty() &&
+      (scans_.back()->odom_epoch != job->odom_epoch || scans_.back()->scan->jumps != job->scan->jumps)) {
+    scans_.clear();
+    tracker_.clear();
+  }
+  scans_.push_back(job);
+  while (scans_.size() > params_.most_scans || job->made - scans_.front()->made > params_.window)
+    scans_.pop_front();
+  if (!is_due(*job)) return reply(StairsStep{{}, job->odom_epoch});
+  sought_ = job->made;
+  sought_from_ = job->scan->located.position;
+  const Eigen::Vector3f eye = (job->scan->located * params_.eye).cast<float>();
+  compute(
+      {.name = "stairs", .modelled = params_.modelled, .lane = "map"},
+      [scans = std::vector(scans_.begin(), scans_.end()), detector = detector_, eye] {
+        return detector->detect(accumulated(scans), eye);
+      },
+      [this, reply, epoch = job->odom_epoch, from = sought_from_](Result<std::vector<Staircase>> seen) {
+        if (!seen) return reply(seen.error());
+        reply(StairsStep{tracker_.take(*seen, from), epoch});
+      });
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "core/component/call.hpp"
+#include "core/component/component.hpp"
+#include "core/geometry/staircase.hpp"
+#include "robot_agent/motion/planner.hpp"
+#include "robot_agent/motion/team_robot.hpp"
+#include "robot_agent/stairs/stairs_tracker.hpp"
+
+namespace adit::perception {
+class StairsDetector;
+}
+
+namespace adit::agent {
+
+/// A scan in which staircases are sought.
+struct StairsJob {
+  std::shared_ptr<const Scan> scan{};
+  std::vector<TeamRobot> team{};  ///< Robots in view, which are no part of a staircase.
+  std::uint32_t odom_epoch{};     ///< Of the scan's odometry frame.
+  Time made{};
+};
+
+/// Confirmed staircases that are new or changed, in the odometry frame.
+struct StairsStep {
+  std::vector<Staircase> stairs{};
+  std::uint32_t odom_epoch{};
+};
+using StairsService = Service<std::shared_ptr<const StairsJob>, StairsStep>;
+
+struct StairsParams {
+  Eigen::Vector3d eye{0, 0, 0};  ///< Of the lidar, base_link, m.
+  Duration window{1500ms};       ///< Scans are accumulated for so long.
+  std::size_t most_scans{8};     ///< In the window.
+  Duration period{1s};           ///< Between two searches, while the robot moves.
+  double least_way{0.15};        ///< Since the last search, m: from the same place it sees the same.
+  Duration modelled{6ms};        ///< Duration of a search in rehearsal.
+};
+
+/// The component that seeks staircases in the scans of the last seconds, on a strand of its own.
+class StairsPart : public Component {
+ public:
+  StairsPart(StairsParams params, Executor& strand, Log log, StairsService& service);
+
+ protected:
+  Result<void> on_start() override;
+
+ private:
+  void take(const std::shared_ptr<const StairsJob>& job, const Reply<StairsStep>& reply);
+  bool is_due(const StairsJob& job) const;
+
+  StairsParams params_;
+  StairsService& service_;
+  std::deque<std::shared_ptr<const StairsJob>> scans_{};
+  std::shared_ptr<perception::StairsDetector> detector_{};
+  StairsTracker tracker_{};
+  std::optional<Time> sought_{};
+  Eigen::Vector3d sought_from_{0, 0, 0};
+};
+
+/// The points of scans, odometry frame, the oldest first: without what moves, and without other robots.
+std::vector<Eigen::Vector3f> accumulated(std::span<const std::shared_ptr<const StairsJob>> scans);
+
+}  // namespace adit::agent
