@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "basestation/findings/report.hpp"
+#include "basestation/findings/stairs_report.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/report/json.hpp"
 #include "basestation/report/table.hpp"
@@ -103,6 +104,10 @@ std::string unknown_text(const Fleet& fleet) {
 Outcome query_outcome(const Request& request, const QuerySubject& subject) {
   const Fleet& fleet = subject.fleet;
   if (request.verb == verb("findings")) return list_findings(request, fleet, subject.content);
+  if (request.verb == verb("stairs")) {
+    const StairsReport report = stairs_report(subject.content.desk(), subject.content.book(), fleet);
+    return done_outcome(request, stairs_text(report), json_of(report));
+  }
   std::vector<const RobotView*> selection;
   for (const std::string& robot : request.robots) {
     selection.push_back(fleet.robot(robot));

@@ -20,7 +20,7 @@ struct QuerySubject {
   Time now{};
 };
 
-/// Answers `list`, `status`, `net`, `actions`, `health` or `findings`.
+/// Answers `list`, `status`, `net`, `actions`, `health`, `findings` or `stairs`.
 Outcome query_outcome(const command::Request& request, const QuerySubject& subject);
 /// Runs `finding N ...`: stores what the operator decides about a finding, and then calls `done`.
 void judge_finding(const command::Request& request, Content& content,

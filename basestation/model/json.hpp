@@ -18,7 +18,7 @@ namespace adit::station {
 std::string line_of(const nlohmann::json& value);
 
 /// For Counts, Robot, Notice, StationSummary, AgentRate, World, CommandEvent, and the reports of queries:
-/// HealthReport, NetworkReport, FoundReport.
+/// HealthReport, NetworkReport, FoundReport, StairsReport.
 template <class T>
 nlohmann::json json_of(const T& value);
 nlohmann::json json_of(const MapUpdate& update);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include "basestation/model/found.hpp"
 #include "basestation/model/health.hpp"
@@ -8,6 +10,7 @@
 #include "basestation/model/json_fields.hpp"
 #include "basestation/model/network.hpp"
 #include "basestation/model/outcome.hpp"
+#include "basestation/model/stairs.hpp"
 #include "core/command/vocabulary.hpp"
 
 namespace adit::station {
@@ -130,6 +133,53 @@ void fields(Io& io, Of<Io, FoundReport>& report) {
   io.field("at_robots", report.at_robots);
 }
 
+template <class Io>
+void fields(Io& io, Of<Io, Climber>& climber) {
+  io.field("robot", climber.robot);
+  io.field("may", climber.may);
+  io.field("reason", climber.reason);
+}
+
+template <class Io>
+void fields(Io& io, Of<Io, Staircase::Sigmas>& sigma) {
+  io.field("place", sigma.place);
+  io.field("heading", sigma.heading);
+  io.field("rise", sigma.rise);
+  io.field("run", sigma.run);
+  io.field("width", sigma.width);
+}
+
+template <class Io>
+void fields(Io& io, Of<Io, StairsItem>& item) {
+  auto& stairs = item.stairs;
+  io.field("number", item.number);
+  io.field("foot", stairs.foot);
+  io.field("heading", stairs.heading);
+  io.field("steps", stairs.steps);
+  io.field("rise", stairs.rise);
+  io.field("run", stairs.run);
+  io.field("width", stairs.width);
+  io.field("sigma", stairs.sigma);
+  if constexpr (Io::kReads) {
+    if (!valid(stairs)) io.refuse("a staircase");
+  } else {
+    io.field("top", stairs.top());
+    io.field("floor_below", stairs.floor_below());
+    io.field("floor_above", stairs.floor_above());
+  }
+  io.field("findings", item.findings);
+  io.field("robots", item.robots);
+  io.word("verdict", item.verdict, Verdict::rejected, [](Verdict verdict) { return to_string(verdict); });
+  io.field("note", item.note);
+  io.field("fleet", item.fleet);
+}
+
+template <class Io>
+void fields(Io& io, Of<Io, StairsReport>& report) {
+  io.field("stairs", report.stairs);
+  io.field("unreadable", report.unreadable);
+}
+
 namespace {
 
 template <class T>
@@ -157,6 +207,7 @@ template json json_of(const CommandEvent& event);
 template json json_of(const HealthReport& report);
 template json json_of(const NetworkReport& report);
 template json json_of(const FoundReport& report);
+template json json_of(const StairsReport& report);
 
 Result<HealthReport> health_of(const CommandOutcome& outcome) {
   return report_of<HealthReport>(outcome, "a health report's");
@@ -166,6 +217,27 @@ Result<NetworkReport> network_of(const CommandOutcome& outcome) {
 }
 Result<FoundReport> findings_of(const CommandOutcome& outcome) {
   return report_of<FoundReport>(outcome, "the findings'");
+}
+
+Result<StairsReport> stairs_of(const CommandOutcome& outcome) {
+  return report_of<StairsReport>(outcome, "the staircases'");
+}
+
+std::vector<std::string> climbers_of(const StairsItem& item) {
+  std::vector<std::string> out;
+  for (const Climber& robot : item.fleet)
+    if (robot.may) out.push_back(robot.robot);
+  return out;
+}
+
+std::string unreadable_text(const StairsReport& report) {
+  if (report.unreadable == 0) return {};
+  return std::to_string(report.unreadable) + (report.unreadable == 1 ? " staircase" : " staircases") +
+         " could not be read";
+}
+
+int degrees_of(const Staircase& stairs) {
+  return static_cast<int>(std::lround(stairs.heading * 180.0 / std::numbers::pi) + 360) % 360;
 }
 
 std::string findings_text_of(const FoundReport& report) {

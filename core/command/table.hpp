@@ -129,6 +129,11 @@ inline constexpr std::array kTable{
                 .summary = "confirm or reject a finding, or take that back",
                 .details = "N as in `findings`; stored at this station, also over its restart",
                 .example = "finding 3 confirm"},
+    CommandInfo{.name = "stairs",
+                .runs = Runs::query,
+                .summary = "staircases that robots found, and which robots may climb them",
+                .details = "merged from all findings of kind stairs; the ID is the number of the first one",
+                .example = "stairs"},
     CommandInfo{
         .name = "map save",
         .arguments = {Argument{.name = "save", .type = Type::keyword}, kFile},

@@ -14,6 +14,7 @@
 #include "basestation/model/action.hpp"
 #include "basestation/model/delta.hpp"
 #include "basestation/model/json.hpp"
+#include "basestation/model/stairs.hpp"
 #include "tests/gui/fixture.hpp"
 
 namespace {
@@ -66,6 +67,7 @@ void read_as_report(const std::string& text) {
   if (const auto health = health_of(outcome)) (void)line_of(json_of(*health));
   if (const auto network = network_of(outcome)) (void)line_of(json_of(*network));
   if (const auto found = findings_of(outcome)) (void)line_of(json_of(*found));
+  if (const auto stairs = stairs_of(outcome)) (void)line_of(json_of(*stairs));
 }
 
 /// Messages of a real station, from which libFuzzer goes on.
@@ -105,6 +107,8 @@ void write_seeds(const std::string& folder) {
   write('r', line_of(json_of(HealthReport{})));
   write('r', line_of(json_of(NetworkReport{})));
   write('r', line_of(json_of(FoundReport{.findings = {{.number = 1, .robot = "r1", .kind = "person"}}})));
+  const Staircase flight{.rise = 0.2, .run = 0.3, .width = 1.2, .steps = 6};
+  write('r', line_of(json_of(StairsReport{.stairs = {{.number = 1, .stairs = flight, .findings = {1}}}})));
 }
 
 }  // namespace

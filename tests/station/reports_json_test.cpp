@@ -10,6 +10,7 @@
 #include "basestation/model/json.hpp"
 #include "basestation/model/network.hpp"
 #include "basestation/model/outcome.hpp"
+#include "basestation/model/stairs.hpp"
 #include "core/time/random.hpp"
 
 namespace adit::station {
@@ -90,6 +91,28 @@ class ReportDraw {
     for (FoundAtRobot& robot : report.at_robots) robot = {text(), count(), count(), count()};
     return report;
   }
+  StairsReport stairs() {
+    StairsReport report;
+    report.unreadable = count();
+    report.stairs.resize(below(4));
+    for (StairsItem& item : report.stairs) {
+      item.number = count();
+      item.stairs = {.foot = {number(), number(), number()},
+                     .heading = random_.uniform(-3.0, 3.0),
+                     .rise = random_.uniform(0.1, 0.25),
+                     .run = random_.uniform(0.2, 0.45),
+                     .width = random_.uniform(0.6, 10.0),
+                     .steps = 3 + static_cast<int>(below(97)),
+                     .sigma = {.place = random_.uniform(), .heading = random_.uniform(), .width = 0.1}};
+      item.findings.resize(below(3), count());
+      item.robots.resize(below(3), text());
+      item.verdict = static_cast<Verdict>(below(3));
+      item.note = text();
+      item.fleet.resize(below(3));
+      for (Climber& robot : item.fleet) robot = {text(), flag(), text()};
+    }
+    return report;
+  }
 
  private:
   Random random_;
@@ -109,6 +132,8 @@ TEST(ReportsJson, ComeBackAsTheyWere) {
     ASSERT_EQ(network_of(outcome_with(network)).value(), network);
     const FoundReport found = draw.found();
     ASSERT_EQ(findings_of(outcome_with(found)).value(), found);
+    const StairsReport stairs = draw.stairs();
+    ASSERT_EQ(stairs_of(outcome_with(stairs)).value(), stairs);
   }
 }
 
@@ -139,6 +164,7 @@ TEST(ReportsJson, WhatDoesNotFitIsRefusedOrHarmless) {
     check(json_of(draw.health()), health_of);
     check(json_of(draw.network()), network_of);
     check(json_of(draw.found()), findings_of);
+    check(json_of(draw.stairs()), stairs_of);
   }
   EXPECT_GT(refused, 300);
 }
@@ -150,6 +176,7 @@ TEST(ReportsJson, AnOutcomeThatIsNoReportIsAnError) {
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().reason, Reason::no_answer);
   EXPECT_FALSE(findings_of({.json = R"({"findings": [{"verdict": "perhaps"}]})"}));
+  EXPECT_FALSE(stairs_of({.json = R"({"stairs": [{"number": 1, "steps": 6}]})"})) << "no height of a step";
   EXPECT_FALSE(health_of({.json = R"({"robots": [{"components": [{"policy": "never"}]}]})"}));
   EXPECT_FALSE(health_of({.json = R"({"robots": [{"components": [{"state": "dancing"}]}]})"}));
 }
