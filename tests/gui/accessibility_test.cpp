@@ -116,7 +116,7 @@ TEST_F(Accessibility, EveryTargetHasANameAndARoleAndIsLargeEnoughAndNoTextIsCutO
   control.set_solid(true);
   walk("three dimensions");
   control.set_solid(false);
-  for (const char* tab : {"health", "network", "findings", "settings", "log"}) {
+  for (const char* tab : {"health", "network", "findings", "stairs", "settings", "log"}) {
     TabsTest::open(tab);
     if (std::string(tab) == "health") {
       control.tabs()->choose("r4", "planner");
@@ -124,6 +124,7 @@ TEST_F(Accessibility, EveryTargetHasANameAndARoleAndIsLargeEnoughAndNoTextIsCutO
     }
     if (std::string(tab) == "network") answer(answer_of(network_of_ten()));
     if (std::string(tab) == "findings") answer(answer_of(some_findings()));
+    if (std::string(tab) == "stairs") answer(answer_of(some_stairs()));
     walk(tab);
   }
   control.tabs()->close();

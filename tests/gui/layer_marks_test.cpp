@@ -73,6 +73,94 @@ TEST(Findings, PlacesThatAreNoPlacesOrBehindTheCameraAreLeftOut) {
       layer_marks({.found = &found, .project = [](const Point3&) { return std::nullopt; }}).targets.empty());
 }
 
+station::StairsReport two_flights() {
+  station::StairsReport report;
+  const Staircase flight{
+      .foot = {4, 2, 0.1}, .heading = 0.0, .rise = 0.2, .run = 0.3, .width = 1.2, .steps = 6};
+  report.stairs = {{.number = 7, .stairs = flight, .findings = {7, 8}, .robots = {"r1", "r2"}},
+                   {.number = 9, .stairs = flight, .findings = {9}, .verdict = station::Verdict::rejected}};
+  return report;
+}
+
+TEST(Ribbons, LeadFromFootToTopWithChevronsUphill) {
+  const station::StairsReport stairs = two_flights();
+  const MarkList marks = layer_marks({.stairs = &stairs, .project = from_above});
+  ASSERT_EQ(marks.shapes.size(), 3U) << "none for the rejected one";
+  const auto& corners = marks.shapes[0].points;
+  ASSERT_EQ(corners.size(), 4U);
+  EXPECT_NEAR(corners[0].x, 40, 1e-9);
+  EXPECT_NEAR(corners[0].y, -14, 1e-9);
+  EXPECT_NEAR(corners[2].x, 55, 1e-9) << "five runs ahead";
+  EXPECT_NEAR(corners[2].y, -26, 1e-9);
+  EXPECT_FALSE(marks.shapes[0].dashed) << "two robots have seen it";
+  for (const std::size_t i : {1U, 2U}) {
+    ASSERT_EQ(marks.shapes[i].points.size(), 3U);
+    EXPECT_GT(marks.shapes[i].points[1].x, marks.shapes[i].points[0].x) << "the tip is uphill";
+  }
+  EXPECT_EQ(texts(marks), (std::vector<std::string>{"6 steps"}));
+  ASSERT_EQ(marks.targets.size(), 1U);
+  EXPECT_EQ(marks.targets[0].finding, 7U);
+}
+
+TEST(Ribbons, FromTheSideHaveTheEdgesOfTheirTreads) {
+  const station::StairsReport stairs = two_flights();
+  const Projection from_south = [](const Point3& place) { return Point{10 * place.x, -10 * place.z}; };
+  const MarkList marks =
+      layer_marks({.stairs = &stairs, .picked = 7, .project = from_south, .from_side = true});
+  ASSERT_EQ(marks.shapes.size(), 7U);
+  EXPECT_NEAR(marks.shapes[1].points[0].y, -2, 1e-9) << "the first tread";
+  EXPECT_NEAR(marks.shapes[6].points[1].y, -12, 1e-9) << "the floor above";
+  EXPECT_EQ(texts(marks), (std::vector<std::string>{"7 stairs, 6 steps"}));
+}
+
+TEST(Ribbons, TakeThePlaceOfTheStarsOfTheirFindings) {
+  const station::StairsReport stairs = two_flights();
+  station::FoundReport found = three_findings();
+  found.findings[2].verdict = station::Verdict::open;
+  found.findings.push_back({.number = 10, .kind = "stairs", .position = {1, 1, 0}});
+  const MarkList marks = layer_marks({.found = &found, .stairs = &stairs, .project = from_above});
+  EXPECT_EQ(texts(marks), (std::vector<std::string>{"6 steps", "10"}))
+      << "10 could not be read as a staircase";
+}
+
+TEST(Ribbons, ThatOneRobotHasSeenAreDashedUntilTheyAreConfirmed) {
+  station::StairsReport stairs = two_flights();
+  stairs.stairs[0].robots = {"r1"};
+  EXPECT_TRUE(layer_marks({.stairs = &stairs, .project = from_above}).shapes[0].dashed);
+  stairs.stairs[0].verdict = station::Verdict::confirmed;
+  EXPECT_FALSE(layer_marks({.stairs = &stairs, .project = from_above}).shapes[0].dashed);
+}
+
+TEST(Ribbons, BelongToTheFloorBelowAndToTheOneAbove) {
+  station::StairsReport stairs = two_flights();
+  stairs.stairs[0].stairs.foot.z() = -3.9;
+  stairs.stairs[0].stairs.steps = 21;
+  const station::World world = robots_on_two_floors();
+  Floors floors;
+  floors.show(two_floors());
+  floors.show(world, Trails{});
+  LayerScene scene{.stairs = &stairs, .project = from_above, .floors = &floors};
+  for (const std::size_t floor : {0U, 1U}) {
+    scene.floor = floor;
+    EXPECT_EQ(layer_marks(scene).shapes[0].opacity, 1.0) << floor;
+  }
+  stairs.stairs[0].stairs.steps = 6;
+  EXPECT_LT(layer_marks(scene).shapes[0].opacity, 0.5) << "it ends below the upper floor";
+}
+
+TEST(Ribbons, PlacesThatAreNoPlacesOrBehindTheCameraHaveNone) {
+  station::StairsReport stairs = two_flights();
+  stairs.stairs.resize(1);
+  EXPECT_TRUE(layer_marks({.stairs = &stairs, .project = [](const Point3&) { return std::nullopt; }})
+                  .targets.empty());
+  for (const double wrong : {1e30, std::numeric_limits<double>::quiet_NaN()})
+    for (const int axis : {0, 1, 2}) {
+      station::StairsReport odd = stairs;
+      odd.stairs[0].stairs.foot[axis] = wrong;
+      EXPECT_TRUE(layer_marks({.stairs = &odd, .project = from_above}).shapes.empty());
+    }
+}
+
 TEST(Convoys, HaveOneLineThroughTheirRobotsInOrder) {
   station::World world{
       .robots = {robot("r1", 0, 0), robot("r2", 4, 0), robot("r3", 8, 0), robot("r4", 1, 9)}};

@@ -41,6 +41,46 @@ TEST_F(LayersTest, FindingsAreOnTheMapWithoutTheTabBeingOpen) {
   this->picture("finding_stars_light");
 }
 
+TEST_F(LayersTest, StairsAreRibbonsOnceTheStationListedThem) {
+  answer(answer_of(findings_with_stairs()), "findings");
+  EXPECT_NE(star(map().marks(), 5), nullptr) << "a star until then";
+  answer(answer_of(some_stairs()), "stairs");
+  EXPECT_EQ(text("count_stairs"), "2") << "the rejected one does not count";
+  ASSERT_NE(star(map().marks(), 4), nullptr);
+  EXPECT_EQ(star(map().marks(), 6), nullptr) << "a part of 4";
+  EXPECT_EQ(star(map().marks(), 7), nullptr) << "rejected";
+  EXPECT_NE(star(map().marks(), 8), nullptr) << "it could not be read";
+  picture("stairs_on_map");
+  const Point at = star(map().marks(), 4)->at;
+  touch(map().mapToScene({at.x, at.y}).toPoint());
+  ASSERT_EQ(control.tabs()->open(), "stairs");
+  EXPECT_EQ(control.tabs()->picked(), 4U);
+  EXPECT_THAT(control.selection(), IsEmpty());
+  settle_layout();
+  picture("stairs");
+  touch(middle("staircase_5"));
+  EXPECT_EQ(control.tabs()->picked(), 5U);
+  const QPoint shown = on_map(9.5, 8 - 2.5 * 0.28);
+  EXPECT_NEAR(shown.x(), map().mapToScene({map().width() / 2, 0}).x(), 3.0);
+  EXPECT_NEAR(shown.y(), (item("panel")->mapToScene({0, 0}).y() + map().mapToScene({0, 0}).y()) / 2, 3.0);
+  EXPECT_EQ(text("unreadable"), "1 staircase could not be read");
+  picture("stairs_picked");
+  open("log");
+  QTest::keyClick(window(), Qt::Key_V);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return solid().voxels().paintings() > 0; }));
+  EXPECT_NE(star(solid().marks(), 5), nullptr);
+  picture("stairs_solid");
+}
+
+TEST_F(LayersTest, StairsAreAskedForAgainWhenFindingsChangeWhileTheyAreAskedFor) {
+  answer(answer_of(findings_with_stairs()), "findings");
+  control.add_command({.id = 1, .ended = true, .line = "finding 4 reject", .mine = true});
+  answer(answer_of(findings_with_stairs()), "findings");
+  EXPECT_EQ(std::ranges::count(sink.queries, "stairs"), 1) << "a question is under way";
+  answer(answer_of(some_stairs()), "stairs");
+  EXPECT_EQ(std::ranges::count(sink.queries, "stairs"), 2);
+}
+
 TEST_F(LayersTest, ATapOnAStarOpensTheTabAtThatFinding) {
   answer(answer_of(some_findings()), "findings");
   touch(on_map(3, 1));

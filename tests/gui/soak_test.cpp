@@ -61,7 +61,7 @@ class Soak : public TabsTest {
     }
   }
   void operate(int step) {
-    const char* tabs[] = {"health", "network", "findings", "settings", "log"};
+    const char* tabs[] = {"health", "network", "findings", "stairs", "settings", "log"};
     if (step % 20 == 0) control.tabs()->toggle(tabs[step / 20 % 5]);
     if (step % 33 == 0) control.set_solid(!control.solid());
     if (step % 60 == 0) Theme::instance().set_light(!Theme::instance().light());

@@ -70,6 +70,37 @@ TEST(Tables, ACsvHoldsItsCellsTogetherAndComputesNothing) {
                                            "\"a \"\"b\"\", c\",\"'-x\"\r\n"));
 }
 
+TEST(Tables, StaircasesSayWhoMayClimbThemAndWhyOthersMayNot) {
+  station::StairsReport report;
+  report.stairs = {{.number = 4,
+                    .stairs = {.foot = {1, 2, 0.1},
+                               .heading = -1.5707963,
+                               .rise = 0.2,
+                               .run = 0.3,
+                               .width = 1.2,
+                               .steps = 6,
+                               .sigma = {.width = 0.05}},
+                    .robots = {"r1", "r3"},
+                    .fleet = {{.robot = "r1", .may = true}, {.robot = "r2", .reason = "climbs no stairs"}}},
+                   {.number = 5, .verdict = station::Verdict::rejected}};
+  const auto rows = stairs_rows(report);
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0], (StairsRow{.number = 4,
+                                .direction = "270°",
+                                .turn = -180.0,
+                                .steps = "6 steps",
+                                .floors = "0.0 to 1.2 m",
+                                .step = "rise 0.20 m, run 0.30 m",
+                                .breadth = "width 1.20 ± 0.05 m",
+                                .robots = "r1, r3",
+                                .verdict = "new",
+                                .climbers = "r1",
+                                .others = "r2 climbs no stairs",
+                                .token = Token::text}));
+  EXPECT_EQ(rows[1].climbers, "no robot");
+  EXPECT_EQ(rows[1].token, Token::dim);
+}
+
 TEST(Settings, ComeBackAsTheyWere) {
   for (const SettingsValues& values : {SettingsValues{}, SettingsValues{true, true, 1.25}}) {
     const SettingsRead read = read_settings(settings_text(values));

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "basestation/model/json.hpp"
+#include "basestation/model/stairs.hpp"
 #include "tests/gui/window_fixture.hpp"
 
 namespace adit::gui {
@@ -100,6 +101,48 @@ inline station::FoundReport some_findings() {
                       .text = "CO 40 ppm",
                       .verdict = station::Verdict::rejected}};
   report.at_robots = {{.robot = "r4", .stored = 4, .here = 1}, {.robot = "r5", .overflowed = 2}};
+  return report;
+}
+
+/// A flight that two robots have seen, one that one robot has seen, and one that was rejected.
+inline station::StairsReport some_stairs() {
+  station::StairsReport report;
+  const auto flight = [](double x, double y, double heading, int steps) {
+    return Staircase{.foot = {x, y, 0.1},
+                     .heading = heading,
+                     .rise = 0.17,
+                     .run = 0.28,
+                     .width = 1.4,
+                     .steps = steps,
+                     .sigma = {.place = 0.03, .heading = 0.01, .rise = 0.002, .run = 0.004, .width = 0.05}};
+  };
+  report.stairs = {{.number = 4,
+                    .stairs = flight(14, 3, 0.6, 18),
+                    .findings = {4, 6},
+                    .robots = {"r1", "r3"},
+                    .verdict = station::Verdict::confirmed,
+                    .fleet = {{.robot = "r1", .may = true},
+                              {.robot = "r2", .reason = "climbs steps of 0.15 m at most"},
+                              {.robot = "r3", .may = true}}},
+                   {.number = 5,
+                    .stairs = flight(9.5, 8, -1.5707963, 6),
+                    .findings = {5},
+                    .robots = {"r3"},
+                    .fleet = {{.robot = "r2", .reason = "climbs no stairs"}}},
+                   {.number = 7,
+                    .stairs = flight(20, 1, 3.1, 4),
+                    .findings = {7},
+                    .robots = {"r3"},
+                    .verdict = station::Verdict::rejected}};
+  report.unreadable = 1;
+  return report;
+}
+/// The findings, and those of the staircases.
+inline station::FoundReport findings_with_stairs() {
+  station::FoundReport report = some_findings();
+  for (const std::uint32_t number : {4U, 5U, 6U, 7U, 8U})
+    report.findings.push_back(
+        {.number = number, .robot = "r3", .kind = "stairs", .position = {14.0 + number, 3, 0.1}});
   return report;
 }
 

@@ -8,6 +8,7 @@
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/model/text.hpp"
 #include "core/command/vocabulary.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::gui {
 namespace {
@@ -216,6 +217,31 @@ std::string found_csv(const station::FoundReport& report) {
            csv_cell(item.text) + "," + csv_cell(item.note) + "\r\n";
   }
   return out;
+}
+
+std::vector<StairsRow> stairs_rows(const station::StairsReport& report) {
+  std::vector<StairsRow> rows;
+  for (const station::StairsItem& item : report.stairs) {
+    const Staircase& s = item.stairs;
+    const bool open = item.verdict == station::Verdict::open;
+    StairsRow row{.number = static_cast<int>(item.number)};
+    row.direction = std::to_string(station::degrees_of(s)) + "°";
+    row.turn = 90.0 - station::degrees_of(s);
+    row.steps = std::to_string(s.steps) + " steps";
+    row.floors = station::fixed(s.floor_below(), 1) + " to " + station::fixed(s.floor_above(), 1) + " m";
+    row.step = "rise " + station::fixed(s.rise, 2) + " m, run " + station::fixed(s.run, 2) + " m";
+    row.breadth = "width " + station::fixed(s.width, 2) + " ± " + station::fixed(s.sigma.width, 2) + " m";
+    row.robots = command::joined(item.robots, "-");
+    row.verdict = open ? "new" : to_string(item.verdict);
+    row.climbers = command::joined(station::climbers_of(item), "no robot");
+    std::vector<std::string> others;
+    for (const station::Climber& robot : item.fleet)
+      if (!robot.may) others.push_back(robot.robot + " " + robot.reason);
+    row.others = command::joined(others, "");
+    row.token = open ? Token::text : item.verdict == station::Verdict::confirmed ? Token::ok : Token::dim;
+    rows.push_back(std::move(row));
+  }
+  return rows;
 }
 
 }  // namespace adit::gui

@@ -8,6 +8,7 @@
 #include "basestation/model/found.hpp"
 #include "basestation/model/health.hpp"
 #include "basestation/model/network.hpp"
+#include "basestation/model/stairs.hpp"
 #include "basestation/model/world.hpp"
 
 /// What the tabs of the window show, as texts.
@@ -75,5 +76,21 @@ std::vector<FoundRow> found_rows(const station::FoundReport& report);
 std::string found_missing(const station::FoundReport& report);
 /// The findings as a file. CSV: RFC 4180; cells that a spreadsheet would compute begin with an apostrophe.
 std::string found_csv(const station::FoundReport& report);
+
+/// A staircase as a row of its tab.
+struct StairsRow {
+  int number{};
+  std::string direction{};        ///< "90°".
+  double turn{};                  ///< Of an arrow that points up, to point uphill, degrees clockwise.
+  std::string steps{}, floors{};  ///< "6 steps", "0.0 to 1.2 m".
+  std::string step{}, breadth{};  ///< "rise 0.20 m, run 0.30 m", "width 1.20 ± 0.05 m".
+  std::string robots{};           ///< That have seen it.
+  std::string verdict{};          ///< As in FoundRow.
+  std::string climbers{};         ///< "r1, r3", "no robot".
+  std::string others{};           ///< "r2 climbs no stairs".
+  Token token{Token::none};
+  bool operator==(const StairsRow&) const = default;
+};
+std::vector<StairsRow> stairs_rows(const station::StairsReport& report);
 
 }  // namespace adit::gui

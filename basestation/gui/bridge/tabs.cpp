@@ -6,6 +6,7 @@
 #include <QDir>
 #include <QSaveFile>
 #include <QStandardPaths>
+#include <algorithm>
 
 #include "basestation/client/connection.hpp"
 #include "basestation/client/paths.hpp"
@@ -17,8 +18,8 @@ namespace {
 constexpr int kPeriodMs = 1000;
 constexpr int kFoundLaterMs = 300;
 
-/// The keys F2 to F6 in their order, and the names of the tabs.
-constexpr std::array kTabNames{"log", "findings", "health", "network", "settings"};
+/// The keys F2 to F7 in their order, and the names of the tabs.
+constexpr std::array kTabNames{"log", "findings", "health", "network", "stairs", "settings"};
 
 }  // namespace
 
@@ -38,6 +39,9 @@ TabState::TabState(CommandSink& sink, RowModel& log, QObject* parent)
       findings_({"number", "importance", "kind", "robot", "place", "age", "line", "note", "verdict", "shape",
                  "token"},
                 this),
+      stairs_({"number", "direction", "turn", "steps", "floors", "step", "breadth", "robots", "verdict",
+               "climbers", "others", "token"},
+              this),
       world_(std::make_shared<station::World>()) {
   timer_.setInterval(kPeriodMs);
   connect(&timer_, &QTimer::timeout, this, &TabState::ask);
@@ -90,7 +94,7 @@ void TabState::toggle(const QString& tab) {
 }
 
 void TabState::time_questions() {
-  const bool asks = extra_ == "health" || extra_ == "network" || watching_network_;
+  const bool asks = extra_ == "health" || extra_ == "network" || extra_ == "stairs" || watching_network_;
   if (asks && !timer_.isActive()) timer_.start();
   if (!asks) timer_.stop();
 }
@@ -131,6 +135,12 @@ void TabState::ask() {
     ask_for("health", &station::health_of, health_asked_, health_, &TabState::show_health);
   if (extra_ == "network" || watching_network_)
     ask_for("net", &station::network_of, network_asked_, net_, &TabState::show_network);
+  if (extra_ == "stairs" && !stairs_asked_) ask_stairs();
+}
+
+void TabState::ask_stairs() {
+  stairs_again_ = stairs_asked_;
+  ask_for("stairs", &station::stairs_of, stairs_asked_, stairs_report_, &TabState::show_stairs);
 }
 
 void TabState::ask_findings() {
@@ -169,9 +179,21 @@ void TabState::pickFinding(int finding) {
       emit place_wanted(item.position[0], item.position[1], item.position[2]);
 }
 
+void TabState::pickStairs(int number) {
+  picked_ = static_cast<std::uint32_t>(number);
+  emit shown();
+  emit findings_changed();
+  for (const station::StairsItem& item : stairs_report_.stairs) {
+    if (item.number != picked_) continue;
+    const Eigen::Vector3d middle = (item.stairs.foot + item.stairs.top()) / 2;
+    if (drawable(middle.x(), middle.y())) emit place_wanted(middle.x(), middle.y(), item.stairs.foot.z());
+  }
+}
+
 void TabState::show_finding(int finding) {
   picked_ = static_cast<std::uint32_t>(finding);
-  if (extra_ != "findings") toggle("findings");
+  const QString tab = picked_stairs_row() < 0 ? "findings" : "stairs";
+  if (extra_ != tab) toggle(tab);
   emit shown();
   emit findings_changed();
 }
@@ -180,6 +202,12 @@ int TabState::picked_row() const {
   for (std::size_t i = 0; i < found_.findings.size(); ++i)
     if (found_.findings[i].number == picked_) return static_cast<int>(i);
   return -1;
+}
+
+int TabState::picked_stairs_row() const {
+  const auto& all = stairs_report_.stairs;
+  const auto at = std::ranges::find(all, picked_, &station::StairsItem::number);
+  return at == all.end() ? -1 : static_cast<int>(at - all.begin());
 }
 
 void TabState::startNote(int finding) {

@@ -16,13 +16,14 @@
 #include "basestation/model/found.hpp"
 #include "basestation/model/health.hpp"
 #include "basestation/model/network.hpp"
+#include "basestation/model/stairs.hpp"
 #include "basestation/model/world.hpp"
 
 namespace adit::gui {
 
 /// The tabs at the bottom of the window: which one is open, and what they show. The log can stay open; the
-/// others cover the map's lower part until they are closed. Health and network are asked for once a second,
-/// only while they are open; findings when there are new ones.
+/// others cover the map's lower part until they are closed. Health, network and staircases are asked for once
+/// a second, only while they are open; findings, and the staircases among them, when there are new ones.
 class TabState : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -39,6 +40,8 @@ class TabState : public QObject {
   Q_PROPERTY(QAbstractItemModel* hearing READ hearing CONSTANT)
   Q_PROPERTY(int speakerCount READ speaker_count NOTIFY shown)
   Q_PROPERTY(QAbstractItemModel* findings READ findings CONSTANT)
+  Q_PROPERTY(QAbstractItemModel* stairs READ stairs CONSTANT)
+  Q_PROPERTY(QString unreadable READ unreadable NOTIFY shown)
   Q_PROPERTY(QString missing READ missing NOTIFY shown)
   Q_PROPERTY(QString problem READ problem NOTIFY shown)
   /// The keys title, text, mine and automatic, as in HealthDetail.
@@ -47,6 +50,7 @@ class TabState : public QObject {
   Q_PROPERTY(int pickedFinding READ picked NOTIFY shown)
   /// The row of that finding; -1: none.
   Q_PROPERTY(int pickedRow READ picked_row NOTIFY shown)
+  Q_PROPERTY(int pickedStairsRow READ picked_stairs_row NOTIFY shown)
 
  public:
   /// `log`: every line of the log, the newest first.
@@ -71,7 +75,9 @@ class TabState : public QObject {
   Q_INVOKABLE void judge(int finding, const QString& verdict);
   /// Marks a finding, and asks the map to show its place.
   Q_INVOKABLE void pickFinding(int finding);
-  /// Opens the tab of findings with that one marked.
+  /// Marks a staircase by its number, and asks the map to show its middle.
+  Q_INVOKABLE void pickStairs(int number);
+  /// Opens the tab of findings, or of staircases, with that one marked.
   void show_finding(int finding);
   Q_INVOKABLE void startNote(int finding);
   Q_INVOKABLE void endNote(const QString& text, bool send);
@@ -89,16 +95,20 @@ class TabState : public QObject {
   QAbstractItemModel* hearing() { return &hearing_; }
   int speaker_count() const { return speakers_.rowCount(); }
   QAbstractItemModel* findings() { return &findings_; }
+  QAbstractItemModel* stairs() { return &stairs_; }
+  const QString& unreadable() const { return unreadable_; }
   const QString& missing() const { return missing_; }
   const QString& problem() const { return problem_; }
   QVariantMap chosen() const;
   int noting() const { return noting_; }
   std::uint32_t picked() const { return picked_; }  ///< Number of the marked finding; 0: none.
   int picked_row() const;
+  int picked_stairs_row() const;
   const station::NetworkReport& net() const { return net_; }
   /// Asks for the network also while its tab is closed.
   void watch_network(bool watch);
   const station::FoundReport& found() const { return found_; }
+  const station::StairsReport& staircases() const { return stairs_report_; }
 
  signals:
   void opened();
@@ -114,6 +124,7 @@ class TabState : public QObject {
   void time_questions();  ///< Starts or stops them.
   void ask();
   void ask_findings();
+  void ask_stairs();
   template <class Report>
   void ask_for(const char* line, Result<Report> (*read)(const station::CommandOutcome&), bool& asked,
                Report& report, void (TabState::*show)());
@@ -121,12 +132,13 @@ class TabState : public QObject {
   void show_health();
   void show_network();
   void show_findings();
+  void show_stairs();
   void write(const QString& name, const QByteArray& content);
 
   CommandSink& sink_;
   LogView log_;
   WindowSettings settings_;
-  RowModel tabs_, columns_, cells_, network_, speakers_, hearing_, findings_;
+  RowModel tabs_, columns_, cells_, network_, speakers_, hearing_, findings_, stairs_;
   std::shared_ptr<const station::World> world_;
   bool silent_{true};
 
@@ -140,7 +152,9 @@ class TabState : public QObject {
   station::NetworkReport net_{};
   bool watching_network_{false};
   station::FoundReport found_{};
-  QString missing_{}, problem_{};
+  bool stairs_asked_{false}, stairs_again_{false};  ///< As of findings.
+  station::StairsReport stairs_report_{};
+  QString missing_{}, unreadable_{}, problem_{};
   std::string chosen_robot_{}, chosen_component_{};
   HealthDetail chosen_{};
   int noting_{0};

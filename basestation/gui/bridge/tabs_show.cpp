@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the tabs show of the station's answers.
 #include <algorithm>
+#include <utility>
 
 #include "basestation/gui/bridge/tabs.hpp"
+#include "core/findings/stairs_data.hpp"
 
 namespace adit::gui {
 void TabState::show_tabs() {
   const auto open_findings =
       std::count_if(found_.findings.begin(), found_.findings.end(),
                     [](const station::FoundItem& item) { return item.verdict == station::Verdict::open; });
+  const auto staircases = std::ranges::count_if(stairs_report_.stairs, [](const station::StairsItem& item) {
+    return item.verdict != station::Verdict::rejected;
+  });
   const auto troubled = std::count_if(world_->robots.begin(), world_->robots.end(),
                                       [](const station::Robot& robot) { return !robot.troubles.empty(); });
   const auto count = [](auto number) { return number > 0 ? QString::number(number) : QString(); };
@@ -16,7 +21,8 @@ void TabState::show_tabs() {
               {"findings", "Findings", "F3", count(open_findings), false},
               {"health", "Health", "F4", count(troubled), troubled > 0},
               {"network", "Network", "F5", QString(), false},
-              {"settings", "Settings", "F6", QString(), false}});
+              {"stairs", "Stairs", "F6", count(staircases), false},
+              {"settings", "Settings", "F7", QString(), false}});
 }
 
 void TabState::show_health() {
@@ -76,6 +82,22 @@ void TabState::show_findings() {
   show_tabs();
   emit findings_changed();
   if (found_again_) found_later_.start();
+  const bool has_stairs = std::ranges::any_of(
+      found_.findings, [](const station::FoundItem& item) { return item.kind == findings::kStairs; });
+  if (has_stairs || !stairs_report_.stairs.empty()) ask_stairs();
+}
+
+void TabState::show_stairs() {
+  std::vector<QVariantList> rows;
+  for (const StairsRow& row : stairs_rows(stairs_report_))
+    rows.push_back({row.number, text_of(row.direction), row.turn, text_of(row.steps), text_of(row.floors),
+                    text_of(row.step), text_of(row.breadth), text_of(row.robots), text_of(row.verdict),
+                    text_of(row.climbers), text_of(row.others), word_of(row.token)});
+  stairs_.show(std::move(rows));
+  unreadable_ = text_of(station::unreadable_text(stairs_report_));
+  show_tabs();
+  emit findings_changed();
+  if (std::exchange(stairs_again_, false)) ask_stairs();
 }
 
 }  // namespace adit::gui

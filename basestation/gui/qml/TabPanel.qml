@@ -29,10 +29,11 @@ Rectangle {
     Component { id: findings; FindingsTab { control: panel.control } }
     Component { id: health; HealthTab { control: panel.control } }
     Component { id: network; NetworkTab { control: panel.control } }
+    Component { id: stairs; StairsTab { control: panel.control } }
     Component { id: settings; SettingsTab { control: panel.control } }
     Loader {
         anchors.fill: parent
-        sourceComponent: ({ findings: findings, health: health, network: network, settings: settings })[panel.open] ?? null
+        sourceComponent: ({ findings: findings, health: health, network: network, stairs: stairs, settings: settings })[panel.open] ?? null
     }
     Rectangle {
         width: parent.width

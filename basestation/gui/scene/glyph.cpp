@@ -54,6 +54,10 @@ void Glyph::paint(QPainter* painter) {
     if (kind_ == "square") painter->drawRect(QRectF(3, 3, 14, 14));
     if (kind_ == "triangle")
       painter->drawPolygon(QPolygonF({QPointF(10, 2), QPointF(18.5, 17.5), QPointF(1.5, 17.5)}));
+    if (kind_ == "arrow")
+      painter->drawPolygon(
+          QPolygonF({QPointF(10, 1.5), QPointF(17, 10), QPointF(12.5, 10), QPointF(12.5, 18.5),
+                     QPointF(7.5, 18.5), QPointF(7.5, 10), QPointF(3, 10)}));
     if (kind_ == "pie") {
       painter->setBrush(Qt::NoBrush);
       painter->setPen(QPen(colour_, 2.5));

@@ -6,7 +6,7 @@
 namespace adit::gui {
 
 /// A small drawing: a kind of platform (wheels, tracks, legs, rotor, unknown), a mark of a state (disc,
-/// triangle, square, ring), a pie that fills, or a dashed frame.
+/// triangle, square, ring), an arrow that points up, a pie that fills, or a dashed frame.
 class Glyph : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT

@@ -7,10 +7,13 @@
 #include <numbers>
 #include <set>
 
+#include "basestation/gui/scene/stairs_marks.hpp"
+
 namespace adit::gui {
 namespace {
 
 constexpr std::size_t kMaxStars = 500;  // The most important ones come first.
+constexpr std::size_t kMaxRibbons = 200;
 
 Shape star(const Point& at, double radius) {
   constexpr int kTips = 5;
@@ -89,10 +92,18 @@ MarkList layer_marks(const LayerScene& scene) {
   if (scene.world)
     for (const station::Robot& robot : scene.world->robots)
       if (!robot.convoy.empty() && convoys.insert(robot.convoy).second) add_convoy(scene, robot.convoy, out);
+  std::set<std::uint32_t> in_ribbons;  // Numbers of findings.
+  std::size_t ribbons = 0;
+  if (scene.stairs)
+    for (const station::StairsItem& item : scene.stairs->stairs) {
+      in_ribbons.insert(item.findings.begin(), item.findings.end());
+      if (item.verdict != station::Verdict::rejected && ++ribbons <= kMaxRibbons)
+        add_stairs(scene, item, out);
+    }
   std::size_t stars = 0;
   if (scene.found)
     for (const station::FoundItem& item : scene.found->findings) {
-      if (item.verdict == station::Verdict::rejected) continue;
+      if (item.verdict == station::Verdict::rejected || in_ribbons.contains(item.number)) continue;
       if (++stars > kMaxStars) break;
       add_finding(scene, item, out);
     }

@@ -9,6 +9,7 @@
 #include "basestation/gui/scene/mark_list.hpp"
 #include "basestation/gui/scene/orbit_camera.hpp"
 #include "basestation/model/found.hpp"
+#include "basestation/model/stairs.hpp"
 
 namespace adit::gui {
 
@@ -19,15 +20,18 @@ using Projection = std::function<std::optional<Point>(const Point3&)>;
 struct LayerScene {
   const station::World* world{};
   const station::FoundReport* found{};
+  const station::StairsReport* stairs{};
   std::uint32_t picked{};  ///< Number of the finding that the operator picked; 0: none.
   Projection project{};
+  bool from_side{};  ///< Heights are seen.
   const Floors* floors{};
   std::optional<std::size_t> floor{};  ///< The one that is shown; nothing: all.
   double mm{3.78};                     ///< Pixels per mm.
 };
 
-/// Stars of findings: a rejected one has none, that of a confirmed one is filled. Lines through the robots of
-/// convoys in their order, with the place of each one.
+/// Ribbons of staircases. Stars of findings: a rejected one has none, that of a confirmed one is filled, and
+/// what is part of a staircase has no star. Lines through the robots of convoys in their order, with the
+/// place of each one.
 MarkList layer_marks(const LayerScene& scene);
 
 /// Arrows beside the robots that are on other floors than the one that is shown, with the floor's name.

@@ -64,6 +64,7 @@ void MapView::refresh() {
   }
   const LayerScene layers{.world = &control_->world(),
                           .found = &control_->tabs()->found(),
+                          .stairs = &control_->tabs()->staircases(),
                           .picked = control_->tabs()->picked(),
                           .project = [this](const Point3& at) { return camera_.to_screen(at.x, at.y); },
                           .floors = &floors_,

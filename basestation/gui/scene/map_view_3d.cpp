@@ -100,8 +100,10 @@ void MapView3D::refresh() {
   };
   MarkList marks = layer_marks({.world = &control_->world(),
                                 .found = &control_->tabs()->found(),
+                                .stairs = &control_->tabs()->staircases(),
                                 .picked = control_->tabs()->picked(),
                                 .project = project,
+                                .from_side = true,
                                 .mm = Theme::instance().mm()});
   append(marks, orbit_marks({.world = &control_->world(),
                              .trails = &control_->trails(),
