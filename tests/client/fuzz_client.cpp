@@ -13,7 +13,10 @@
 #include "basestation/client/options.hpp"
 #include "basestation/model/action.hpp"
 #include "basestation/model/delta.hpp"
+#include "basestation/model/found.hpp"
+#include "basestation/model/health.hpp"
 #include "basestation/model/json.hpp"
+#include "basestation/model/network.hpp"
 #include "basestation/model/stairs.hpp"
 #include "tests/gui/fixture.hpp"
 
