@@ -23,6 +23,11 @@ Id drawn(Random random) {
   return id;
 }
 
+findings::Finding stamped(findings::Finding finding, Time now) {
+  if (finding.stamp == 0) finding.stamp = to_stamp(now);
+  return finding;
+}
+
 }  // namespace
 
 Agent::Agent(AgentParams params, Runtime& runtime, wire::Participant& radio, wire::Participant& robot)
@@ -73,13 +78,22 @@ void Agent::at_console(const std::string& line, std::function<void(const std::st
 }
 
 void Agent::report(findings::Finding finding) {
-  Executor& strand = impl_->command_strand();
-  strand.post([context = impl_->context.get(), &strand, finding = std::move(finding)]() mutable {
-    if (finding.stamp == 0) finding.stamp = to_stamp(strand.now());
-    if (const auto taken = context->findings->report(std::move(finding)); !taken)
-      context->notifier->to_all(Severity::warning, "finding_refused", taken.reason(),
-                                "a finding: " + taken.error().text);
+  impl_->with_findings([finding = std::move(finding)](FindingSource& source, Time now) -> Result<void> {
+    const auto taken = source.report(stamped(finding, now));
+    return taken ? Result<void>{} : taken.error();
   });
+}
+
+void Agent::update(findings::Finding finding) {
+  impl_->with_findings([finding = std::move(finding)](FindingSource& source, Time now) -> Result<void> {
+    if (source.has(finding.key.id)) return source.update(stamped(finding, now));
+    const auto taken = source.report(stamped(finding, now));
+    return taken ? Result<void>{} : taken.error();
+  });
+}
+
+void Agent::withdraw(std::uint64_t id) {
+  impl_->with_findings([id](FindingSource& source, Time) { return source.withdraw(id); });
 }
 
 void Agent::map_frame(Executor& caller, std::function<void(const Result<MapFrame>&)> done) {

@@ -99,6 +99,14 @@ class Agent {
   /// invalid or there is no room, all operators are notified. Callable from any thread live, after start().
   void report(findings::Finding finding);
 
+  /// Changes a finding, or reports it if the robot does not have one of that id (any more). Stations get the
+  /// newest content, at most every 2 s; stamp 0 is replaced by the present time. Notifications and threads:
+  /// as report().
+  void update(findings::Finding finding);
+  /// Withdraws a finding: stations keep it and list it as withdrawn, until it is updated. Notifications and
+  /// threads: as report().
+  void withdraw(std::uint64_t id);
+
   /// Requests the pose of the odometry frame in the map, from which a correction is computed. `done` runs on
   /// `caller` exactly once, unless that strand ends first. Errors: no_answer (the command component is not
   /// running, or does not answer within 2 s), cancelled (it was restarted meanwhile, or the agent ended),

@@ -339,6 +339,15 @@ FindingSource::Outputs Agent::Impl::findings_outputs() {
           }};
 }
 
+void Agent::Impl::with_findings(std::function<Result<void>(FindingSource& source, Time now)> work) {
+  Executor& strand = command_strand();
+  strand.post([context = context.get(), &strand, work = std::move(work)] {
+    if (const auto done = work(*context->findings, strand.now()); !done)
+      context->notifier->to_all(Severity::warning, "finding_refused", done.reason(),
+                                "a finding: " + done.error().text);
+  });
+}
+
 Unit* Agent::Impl::find(const std::string& component) {
   for (Unit* unit : {&command, &planner, &router, &sensors, &map, &stairs})
     if (unit->name() == component && (unit != &router || context->router) && (unit != &map || context->map) &&

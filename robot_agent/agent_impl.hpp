@@ -26,6 +26,8 @@ struct Agent::Impl {
   Result<void> open(wire::Participant& radio, wire::Participant& robot);
   Unit* find(const std::string& component);
   Executor& command_strand() { return *command.slot()->strand; }
+  /// Runs `work` on the command strand; all operators are notified of its error.
+  void with_findings(std::function<Result<void>(FindingSource& source, Time now)> work);
 
   const AgentParams& params;
   Runtime& runtime;

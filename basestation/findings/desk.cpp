@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/findings/desk.hpp"
 
+#include <algorithm>
+
 #include "core/findings/finding_piece.hpp"
 
 namespace adit::station {
@@ -14,7 +16,7 @@ FindingDesk::FindingDesk(DeskParams params, std::shared_ptr<store::Disk> disk, E
                          Outputs outputs)
     : outputs_(std::move(outputs)),
       finding_store_({.max_findings = params.max_findings}, std::move(disk), home, nullptr,
-                     {[this](const findings::Key& key) { on_stored(key); },
+                     {[this](const findings::Key& key, std::uint32_t revision) { on_stored(key, revision); },
                       [this](bool failing, const std::string& text) {
                         outputs_.trouble(failing ? "store_failing" : "store_works", text);
                       }}) {}
@@ -31,13 +33,20 @@ Result<void> FindingDesk::hear(const std::string& robot, std::span<const std::ui
   Waiting waiting{{}, std::move(stored)};
   for (findings::Finding& finding : piece->findings) {
     const findings::Key key = finding.key;
-    const bool is_new = !finding_store_.all().contains(key);
+    const std::uint32_t revision = finding.revision;
+    const auto found = finding_store_.all().find(key);
+    const bool is_new = found == finding_store_.all().end();
+    const bool is_newer = !is_new && found->second.revision < revision;
     if (!finding_store_.put(std::move(finding))) {
       fits = false;
       continue;
     }
-    if (!finding_store_.is_stored(key)) waiting.keys.insert(key);
+    if (!finding_store_.is_stored(key)) {
+      std::uint32_t& wanted = waiting.revisions[key];
+      wanted = std::max(wanted, revision);
+    }
     if (is_new) outputs_.found(finding_store_.all().at(key));
+    if (is_newer && outputs_.changed) outputs_.changed(finding_store_.all().at(key));
   }
   if (!fits) {
     if (!reported_full_)
@@ -45,7 +54,7 @@ Result<void> FindingDesk::hear(const std::string& robot, std::span<const std::ui
     reported_full_ = true;
     return {Reason::queue_full, "no room for more findings"};
   }
-  if (waiting.keys.empty()) {
+  if (waiting.revisions.empty()) {
     waiting.stored();  // They were stored before, and that acknowledgement was lost.
     return {};
   }
@@ -55,10 +64,14 @@ Result<void> FindingDesk::hear(const std::string& robot, std::span<const std::ui
   return {};
 }
 
-void FindingDesk::on_stored(const findings::Key& key) {
-  for (Waiting& piece : waiting_)
-    if (piece.keys.erase(key) > 0 && piece.keys.empty()) piece.stored();
-  std::erase_if(waiting_, [](const Waiting& piece) { return piece.keys.empty(); });
+void FindingDesk::on_stored(const findings::Key& key, std::uint32_t revision) {
+  for (Waiting& piece : waiting_) {
+    const auto wanted = piece.revisions.find(key);
+    if (wanted == piece.revisions.end() || wanted->second > revision) continue;
+    piece.revisions.erase(wanted);
+    if (piece.revisions.empty()) piece.stored();
+  }
+  std::erase_if(waiting_, [](const Waiting& piece) { return piece.revisions.empty(); });
 }
 
 }  // namespace adit::station

@@ -4,7 +4,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <set>
 #include <span>
 #include <string>
 
@@ -18,8 +17,9 @@ struct DeskParams {
   std::size_t max_findings{4096};  ///< Maximum number of findings of all robots, [1, 65536].
 };
 
-/// Stores the findings of all robots on this station's disk. A piece of findings is acknowledged to its robot
-/// once all of them are on disk here: what does not fit, or cannot be written, stays with the robot.
+/// Stores the findings of all robots on this station's disk, each in the newest revision that came. A piece
+/// of findings is acknowledged to its robot once all of them are on disk here in their revision or a newer
+/// one: what does not fit, or cannot be written, stays with the robot.
 class FindingDesk {
  public:
   static constexpr std::size_t kMaxPieces = 256;  ///< That wait for the disk; then the oldest is forgotten.
@@ -27,6 +27,7 @@ class FindingDesk {
     std::function<void(const findings::Finding&)> found{};  ///< Called with a new finding.
     /// `code`: findings_full or store_failing, store_works.
     std::function<void(const std::string& code, const std::string& text)> trouble{};
+    std::function<void(const findings::Finding&)> changed{};  ///< Called with a newer revision; may be empty.
   };
   /// How many findings a robot stores, and for how many it had no room, as it reports.
   struct Report {
@@ -47,12 +48,12 @@ class FindingDesk {
   const std::map<std::string, Report>& robots() const { return robots_; }
 
  private:
-  /// A piece that is acknowledged when these findings are on disk.
+  /// A piece that is acknowledged when these findings are on disk, each in that revision or a newer one.
   struct Waiting {
-    std::set<findings::Key> keys{};
+    std::map<findings::Key, std::uint32_t> revisions{};
     std::function<void()> stored{};
   };
-  void on_stored(const findings::Key& key);
+  void on_stored(const findings::Key& key, std::uint32_t revision);
 
   Outputs outputs_;
   std::deque<Waiting> waiting_{};

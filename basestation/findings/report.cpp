@@ -31,6 +31,11 @@ double age(const Finding& finding, const Fleet& fleet) {
   return static_cast<double>(robot->stamp - finding.stamp) * 1e-9;
 }
 
+std::string verdict_text(const FoundItem& item) {
+  if (!item.withdrawn) return to_string(item.verdict);
+  return item.verdict == Verdict::open ? "withdrawn" : to_string(item.verdict) + std::string(", withdrawn");
+}
+
 }  // namespace
 
 FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Fleet& fleet,
@@ -43,7 +48,8 @@ FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, co
                    .kind = command::clean(f->kind, Finding::kKind),
                    .importance = f->importance,
                    .position = f->position,
-                   .text = command::clean(f->text, Finding::kText)};
+                   .text = command::clean(f->text, Finding::kText),
+                   .withdrawn = f->withdrawn};
     if (const double seconds_ago = age(*f, fleet); seconds_ago >= 0) item.age = seconds_ago;
     if (const FindingBook::Judgement* entry = book.find(f->key)) {
       item.number = entry->number;
@@ -68,7 +74,7 @@ std::string findings_text(const FoundReport& report) {
     for (const FoundItem& item : report.findings)
       rows.push_back({std::to_string(item.number), item.robot, item.kind, fixed(item.position[0], 2),
                       fixed(item.position[1], 2), fixed(item.position[2], 2),
-                      item.age ? fixed(*item.age, 0) : "-", to_string(item.verdict), item.text, item.note,
+                      item.age ? fixed(*item.age, 0) : "-", verdict_text(item), item.text, item.note,
                       item.id});
     out = table(rows);
   }

@@ -25,7 +25,8 @@ struct FoundItem {
   std::string text{};
   std::optional<double> age{};  ///< By the robot's clock, s; unset: unknown.
   Verdict verdict{Verdict::open};
-  std::string note{};  ///< The operator's.
+  std::string note{};     ///< The operator's.
+  bool withdrawn{false};  ///< The robot took it back.
   bool operator==(const FoundItem&) const = default;
 };
 

@@ -117,6 +117,7 @@ void fields(Io& io, Of<Io, FoundItem>& item) {
   if (Io::kReads || item.age) io.field("age", item.age);
   io.word("verdict", item.verdict, Verdict::rejected, [](Verdict verdict) { return to_string(verdict); });
   io.field("note", item.note);
+  if (Io::kReads || item.withdrawn) io.field("withdrawn", item.withdrawn);
 }
 
 template <class Io>

@@ -9,7 +9,7 @@
 namespace adit::findings {
 namespace {
 
-constexpr store::StateFormat kFormat{{'F', 'I', 'N', 'D'}, 1, 1024};
+constexpr store::StateFormat kFormat{{'F', 'I', 'N', 'D'}, 2, 1024};
 constexpr const char* kPrefix = "finding-";
 
 bool valid_robot(const std::string& name) {
@@ -24,9 +24,15 @@ bool valid(const Finding& f) {
          std::all_of(f.position.begin(), f.position.end(), [](double v) { return std::isfinite(v); });
 }
 
+bool same_content(const Finding& a, const Finding& b) {
+  Finding other = b;
+  other.revision = a.revision;
+  return a == other;
+}
+
 store::Bytes to_file(const Finding& f) {
   store::Packer out;
-  out.text(f.key.robot).put(f.key.id).text(f.kind).put(f.importance);
+  out.text(f.key.robot).put(f.key.id).put(f.revision).flag(f.withdrawn).text(f.kind).put(f.importance);
   for (const double value : f.position) out.put(value);
   out.put(f.stamp).text(f.text).put(static_cast<std::uint16_t>(f.data.size())).raw(f.data);
   return store::encode_envelope(kFormat, 0, out.bytes());
@@ -34,11 +40,16 @@ store::Bytes to_file(const Finding& f) {
 
 FindingFile read_finding(std::span<const std::uint8_t> bytes) {
   const store::State state = store::decode_envelope(kFormat, bytes);
-  if (state.found != store::LoadStatus::good) return {state.found, std::nullopt};
+  const bool first_version = state.found == store::LoadStatus::older && state.version == 1;
+  if (state.found != store::LoadStatus::good && !first_version) return {state.found, std::nullopt};
   store::Unpacker in(state.payload);
   Finding f{};
   f.key.robot = in.text(32);
   f.key.id = in.get<std::uint64_t>();
+  if (!first_version) {
+    f.revision = in.get<std::uint32_t>();
+    f.withdrawn = in.flag();
+  }
   f.kind = in.text(Finding::kKind);
   f.importance = in.get<std::uint8_t>();
   for (double& value : f.position) value = in.number();

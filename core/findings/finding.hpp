@@ -19,11 +19,14 @@ struct Key {
   auto operator<=>(const Key&) const = default;
 };
 
-/// Something that a robot found, with its kind, place and importance.
+/// Something that a robot found, with its kind, place and importance. Only its robot changes it; of two
+/// findings with the same key the one of the higher revision is valid.
 struct Finding {
   static constexpr std::size_t kKind = 32, kText = 128, kData = 400;
 
   Key key{};                         ///< Unique: two different findings never share a key.
+  std::uint32_t revision{};          ///< 0: never changed. Rises with each change, not always by one.
+  bool withdrawn{};                  ///< The robot takes it back; a later revision may restore it.
   std::string kind{};                ///< For example artifact, person, gas; 1 to 32 bytes.
   std::uint8_t importance{};         ///< Findings of higher importance are sent first and dropped last.
   std::array<double, 3> position{};  ///< Map frame, m.
@@ -42,9 +45,13 @@ struct FindingFile {
   std::optional<Finding> finding{};
 };
 
-/// Encodes a finding as a file with header and checksum, at most `kMaxFindingFile` bytes.
+/// Whether two findings differ at most in their revision.
+bool same_content(const Finding& a, const Finding& b);
+
+/// Encodes a finding as a file with header and checksum, at most `kMaxFindingFile` bytes, of version 2.
 store::Bytes to_file(const Finding& finding);
 inline constexpr std::size_t kMaxFindingFile = 4096;
+/// Decodes a file of version 1 (revision 0, not withdrawn) or 2.
 FindingFile read_finding(std::span<const std::uint8_t> bytes);
 /// Decodes a finding; nothing when the bytes are no valid file.
 inline std::optional<Finding> from_file(std::span<const std::uint8_t> bytes) {

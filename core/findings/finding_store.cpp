@@ -2,6 +2,7 @@
 #include "core/findings/finding_store.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace adit::findings {
 namespace {
@@ -30,7 +31,9 @@ struct FindingStore::Batch {
   struct Save {
     Key key{};
     store::Bytes bytes{};
-    bool aside{};  ///< A file of another version has this name: it is renamed first.
+    std::uint32_t revision{};
+    std::uint64_t change{};  ///< As of Work.
+    bool aside{};            ///< A file of another version has this name: it is renamed first.
   };
   std::vector<Save> save{};
   std::vector<Key> remove{};
@@ -88,6 +91,7 @@ LoadReport FindingStore::load() {
   for (Finding& finding : found) {
     if (full()) {
       ++report.surplus;
+      report.surplus_revision = std::max(report.surplus_revision, finding.revision);
       continue;
     }
     all_.emplace(finding.key, std::move(finding));
@@ -118,16 +122,18 @@ void FindingStore::load_file(const std::string& name, LoadReport& report, std::v
 
 bool FindingStore::put(Finding finding) {
   if (!valid(finding)) return false;
-  if (all_.contains(finding.key)) return true;
-  if (full()) return false;
   const Key key = finding.key;
-  all_.emplace(key, std::move(finding));
+  const std::uint32_t revision = finding.revision;
+  const auto found = all_.find(key);
+  if (found != all_.end() && revision <= found->second.revision) return true;
+  if (found == all_.end() && full()) return false;
+  all_.insert_or_assign(key, std::move(finding));
   if (!disk_) {
-    outputs_.stored(key);
+    outputs_.stored(key, revision);
     return true;
   }
   dropped_.erase(key);
-  unsaved_.emplace(key, 0);
+  unsaved_.try_emplace(key, Work{.order = tries_}).first->second.change = ++changes_;
   write();
   return true;
 }
@@ -135,7 +141,7 @@ bool FindingStore::put(Finding finding) {
 void FindingStore::drop(const Key& key) {
   if (all_.erase(key) == 0 || !disk_) return;
   unsaved_.erase(key);
-  dropped_.emplace(key, 0);
+  dropped_.emplace(key, Work{.change = ++changes_, .order = tries_});
   write();
 }
 
@@ -146,30 +152,32 @@ void FindingStore::write() {
   if (!writing_.expired()) return;
   auto batch = std::make_shared<Batch>();
   // Findings whose last attempt failed come last, so that a file that cannot be written does not delay
-  // others.
+  // others. Those that wait longest come first, so that one that changes all the time does not, either.
   const auto first = [](const Pending& pending) {
-    std::vector<std::pair<std::uint64_t, Key>> keys;
-    for (const auto& [key, tried] : pending) keys.emplace_back(tried, key);
+    std::vector<std::tuple<bool, std::uint64_t, Key>> keys;
+    for (const auto& [key, work] : pending) keys.emplace_back(work.failed, work.order, key);
     std::sort(keys.begin(), keys.end());
     keys.resize(std::min(keys.size(), kBatch));
     return keys;
   };
-  for (const auto& [tried, key] : first(dropped_)) batch->remove.push_back(key);
-  for (const auto& [tried, key] : first(unsaved_)) add_save(*batch, key);
+  for (const auto& [failed, order, key] : first(dropped_)) batch->remove.push_back(key);
+  for (const auto& [failed, order, key] : first(unsaved_)) add_save(*batch, key);
   writing_ = batch;
   start(batch);
 }
 
 void FindingStore::add_save(Batch& batch, const Key& key) const {
-  batch.save.push_back({key, to_file(all_.at(key)), foreign_.contains(file_name(key))});
+  const Finding& finding = all_.at(key);
+  batch.save.push_back(
+      {key, to_file(finding), finding.revision, unsaved_.at(key).change, foreign_.contains(file_name(key))});
 }
 
 void FindingStore::flush() {
   if (!disk_ || disk_->instant() || !writer_ || (unsaved_.empty() && dropped_.empty())) return;
   auto batch = std::make_shared<Batch>();
-  for (const auto& [key, tried] : dropped_) batch->remove.push_back(key);
+  for (const auto& [key, work] : dropped_) batch->remove.push_back(key);
   std::vector<const Finding*> left;
-  for (const auto& [key, tried] : unsaved_) left.push_back(&all_.at(key));
+  for (const auto& [key, work] : unsaved_) left.push_back(&all_.at(key));
   std::stable_sort(left.begin(), left.end(),
                    [](const Finding* a, const Finding* b) { return a->importance > b->importance; });
   for (const Finding* finding : left) add_save(*batch, finding->key);
@@ -201,12 +209,12 @@ void FindingStore::written(const Batch& batch) {
   writing_.reset();
   if (!batch.ran) return;  // The batch was dropped; the retry timer still runs.
   ++tries_;
-  std::vector<Key> saved;
+  std::vector<std::pair<Key, std::uint32_t>> saved;
   for (const Key& key : batch.remove) {
     const auto entry = dropped_.find(key);
     if (entry == dropped_.end()) continue;
     if (batch.failed.contains(key))
-      entry->second = tries_;
+      entry->second.failed = true, entry->second.order = tries_;
     else
       dropped_.erase(entry);
   }
@@ -214,22 +222,22 @@ void FindingStore::written(const Batch& batch) {
     const auto entry = unsaved_.find(s.key);
     if (!batch.failed.contains(s.key)) foreign_.erase(file_name(s.key));
     if (entry == unsaved_.end()) continue;  // Removed from the store meanwhile.
-    if (batch.failed.contains(s.key)) {
-      entry->second = tries_;
-    } else {
-      unsaved_.erase(entry);
-      saved.push_back(s.key);
-    }
+    Work& work = entry->second;
+    work.failed = batch.failed.contains(s.key);
+    work.order = tries_;
+    if (work.failed) continue;
+    saved.emplace_back(s.key, s.revision);
+    if (work.change == s.change) unsaved_.erase(entry);  // Else it was changed meanwhile.
   }
   const auto failed = [](const Pending& pending) {
-    return std::any_of(pending.begin(), pending.end(), [](const auto& entry) { return entry.second > 0; });
+    return std::any_of(pending.begin(), pending.end(), [](const auto& entry) { return entry.second.failed; });
   };
   const bool failing = failed(unsaved_) || failed(dropped_);
   if (failing != failing_ && (!failing || !batch.error.empty())) {
     failing_ = failing;
     outputs_.failing(failing, failing ? batch.error : "findings are stored again");
   }
-  for (const Key& key : saved) outputs_.stored(key);
+  for (const auto& [key, revision] : saved) outputs_.stored(key, revision);
   // When nothing of the batch could be written, the retry timer decides.
   if (batch.failed.size() < batch.save.size() + batch.remove.size()) write();
 }

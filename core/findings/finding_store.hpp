@@ -26,7 +26,8 @@ struct LoadReport {
   std::size_t newer{};       ///< Written by another version of this program.
   std::size_t unreadable{};  ///< Refused by the disk: perhaps readable at the next start.
   std::size_t surplus{};     ///< Beyond FindingStoreParams::max_findings; the most important ones are loaded.
-  std::string error{};       ///< Error when the folder cannot be listed; else empty.
+  std::uint32_t surplus_revision{};  ///< The highest of those.
+  std::string error{};               ///< Error when the folder cannot be listed; else empty.
   bool operator==(const LoadReport&) const = default;
   /// Text for operators; empty when everything was loaded.
   std::string text() const;
@@ -37,7 +38,8 @@ class FindingStore {
  public:
   /// Callbacks of the store, on its strand.
   struct Outputs {
-    std::function<void(const Key&)> stored{};  ///< Called when the finding is on disk.
+    /// Called when this revision of a finding is on disk. A newer one may have been put meanwhile.
+    std::function<void(const Key&, std::uint32_t revision)> stored{};
     /// Called when the disk begins to fail (with the reason), or works again.
     std::function<void(bool failing, const std::string& text)> failing{};
   };
@@ -52,8 +54,8 @@ class FindingStore {
 
   /// Loads the findings on the disk; call it before put().
   LoadReport load();
-  /// Adds a finding. Returns false when the store is full, or the finding is not valid. An existing finding
-  /// of the same key stays unchanged.
+  /// Adds a finding, or replaces an older revision of it. One of the same or of a newer revision stays
+  /// unchanged. Returns false when the finding is not valid, or is a new one and the store is full.
   bool put(Finding finding);
   void drop(const Key& key);
   /// Passes all findings that are not on disk yet to the writer's strand, the most important first. Called at
@@ -63,13 +65,18 @@ class FindingStore {
 
   const std::map<Key, Finding>& all() const { return all_; }
   bool full() const { return all_.size() >= params_.max_findings; }
-  /// Whether the finding is on disk.
+  /// Whether the finding is on disk in its newest revision.
   bool is_stored(const Key& key) const { return all_.contains(key) && !unsaved_.contains(key); }
 
  private:
   struct Batch;
-  /// Keys whose file must be written or removed, with the number of the last attempt that failed; 0: none.
-  using Pending = std::map<Key, std::uint64_t>;
+  /// A file that must be written or removed.
+  struct Work {
+    std::uint64_t change{};  ///< Number of the put() or drop() that made it necessary.
+    bool failed{};           ///< The last attempt failed.
+    std::uint64_t order{};   ///< Batches that were written before it was put, or failed; those go first.
+  };
+  using Pending = std::map<Key, Work>;
 
   void load_file(const std::string& name, LoadReport& report, std::vector<Finding>& found);
   void write();
@@ -87,7 +94,7 @@ class FindingStore {
   /// Files that load() did not use: renamed to NAME.aside before a finding takes the name.
   std::set<std::string> foreign_{};
   std::size_t bad_files_{};
-  std::uint64_t tries_{};
+  std::uint64_t tries_{}, changes_{};
   /// The running batch. It expires when it is written, and also when the strand or the pool drops it.
   std::weak_ptr<Batch> writing_{};
   bool failing_{};

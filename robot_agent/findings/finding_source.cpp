@@ -34,16 +34,19 @@ FindingSource::FindingSource(FindingParams params, std::shared_ptr<store::Disk> 
       random_(params_.seed),
       known_(disk, home, writer),
       finding_store_({.max_findings = params_.max_findings}, std::move(disk), home, std::move(writer),
-                     {[](const findings::Key&) {}, outputs_.failing}) {}
+                     {[this](const findings::Key& key, std::uint32_t revision) { on_stored(key, revision); },
+                      outputs_.failing}) {}
 
 findings::LoadReport FindingSource::load() {
   findings::LoadReport report = finding_store_.load();
-  known_.load([this](std::uint64_t id) { return finding_store_.all().contains({params_.robot, id}); });
+  known_.load([this](std::uint64_t id) { return finding_store_.all().contains(key(id)); });
+  if (report.surplus > 0) known_.raise_above(report.surplus_revision);
   return report;
 }
 
 Result<std::uint64_t> FindingSource::report(Finding finding) {
   finding.key.robot = params_.robot;
+  const bool given = finding.key.id != 0;  // Else no station can have one of that id.
   while (finding.key.id == 0) finding.key.id = random_.next();
   if (!findings::valid(finding))
     return {Reason::bad_argument, "a finding needs a kind, a place, and fits its bounds"};
@@ -51,17 +54,92 @@ Result<std::uint64_t> FindingSource::report(Finding finding) {
   if (finding_store_.all().contains(finding.key)) return id;
   if (finding_store_.full() && !make_room(finding.importance))
     return {Reason::queue_full, "no room for one more finding"};
+  finding.revision = given ? known_.floor() : 0;
   (void)finding_store_.put(std::move(finding));  // It is valid, and there is room.
-  for (auto& [station, peer] : peers_) peer.wants.try_emplace(id);
-  rests_until_.reset();
+  revised_[id] = home_.now();
+  offer(id);
   return id;
+}
+
+Result<void> FindingSource::update(Finding finding) {
+  finding.key.robot = params_.robot;
+  if (!findings::valid(finding))
+    return {Reason::bad_argument, "a finding needs a kind, a place, and fits its bounds"};
+  const std::uint64_t id = finding.key.id;
+  const auto stored = finding_store_.all().find(finding.key);
+  if (stored == finding_store_.all().end()) return {Reason::bad_argument, "there is no finding of that id"};
+  if (std::max(stored->second.revision, known_.floor()) == UINT32_MAX)
+    return {Reason::out_of_range, "the finding cannot be changed any more"};
+  if (findings::same_content(stored->second, finding))
+    changed_.erase(id);
+  else
+    changed_.insert_or_assign(id, std::move(finding));
+  return {};
+}
+
+Result<void> FindingSource::withdraw(std::uint64_t id) {
+  const auto changed = changed_.find(id);
+  const auto stored = finding_store_.all().find(key(id));
+  if (stored == finding_store_.all().end()) return {Reason::bad_argument, "there is no finding of that id"};
+  Finding finding = changed != changed_.end() ? changed->second : stored->second;
+  finding.withdrawn = true;
+  return update(std::move(finding));
+}
+
+void FindingSource::revise(Time now) {
+  std::erase_if(revised_, [now](const auto& entry) { return now - entry.second >= kRefinement; });
+  if (changed_.empty() || (round_ && now - *round_ < kRound)) return;
+  // While the revision before is not on the disk, the change waits: a disk that is slow gets one at a time.
+  std::erase_if(changed_, [&](auto& entry) {
+    if (revised_.contains(entry.first) || !finding_store_.is_stored(key(entry.first))) return false;
+    revised_[entry.first] = now;
+    round_ = now;
+    revise(entry.first, std::move(entry.second));
+    return true;
+  });
+}
+
+void FindingSource::revise(std::uint64_t id, Finding content) {
+  const Finding& old = finding_store_.all().at(key(id));
+  content.revision = std::max(old.revision, known_.floor()) + 1;
+  before_.insert_or_assign(id, old);
+  (void)finding_store_.put(std::move(content));
+}
+
+void FindingSource::flush() {
+  for (auto& [id, content] : changed_) revise(id, std::move(content));
+  changed_.clear();
+  finding_store_.flush();
+}
+
+void FindingSource::on_stored(const findings::Key& key, std::uint32_t revision) {
+  if (finding_store_.all().at(key).revision == revision && before_.erase(key.id) > 0) offer(key.id);
+}
+
+const Finding& FindingSource::sendable(std::uint64_t id) const {
+  const auto before = before_.find(id);
+  return before != before_.end() ? before->second : finding_store_.all().at(key(id));
+}
+
+void FindingSource::offer(std::uint64_t id) {
+  const std::uint32_t revision = sendable(id).revision;
+  for (auto& [station, peer] : peers_) {
+    const auto [entry, is_new] = peer.wants.try_emplace(id);
+    Want& want = entry->second;
+    if (is_new) want.first = !known_.revision(id, station);
+    if (is_new || want.flights > 0) want.since = home_.now();
+    if (want.flights > 0) --peer.flying;  // With an older revision.
+    want.flights = 0;
+    want.revision = revision;
+  }
+  rests_until_.reset();
 }
 
 bool FindingSource::make_room(std::uint8_t importance) {
   const Finding* least = nullptr;  // The least important one; findings that a station has go first.
   bool least_known = false;
   for (const auto& [key, finding] : finding_store_.all()) {
-    const bool known = known_.has(key.id);
+    const bool known = known_.has(key.id, finding.revision) && !changed_.contains(key.id);
     if (least && (least_known != known ? least_known : least->importance <= finding.importance)) continue;
     least = &finding;
     least_known = known;
@@ -76,6 +154,9 @@ bool FindingSource::make_room(std::uint8_t importance) {
   if (!give_up) return false;
   const findings::Key key = least->key;
   known_.erase(key.id);
+  known_.raise_above(least->revision);
+  changed_.erase(key.id);
+  before_.erase(key.id);
   for (auto& [station, peer] : peers_) take_from(peer, key.id);
   finding_store_.drop(key);
   return true;
@@ -100,6 +181,7 @@ void FindingSource::heard(const PeerId& station, Time now) {
 }
 
 void FindingSource::tick(Time now) {
+  revise(now);
   known_.tick(now);
   const bool idle = std::all_of(peers_.begin(), peers_.end(),
                                 [this](const auto& peer) { return missing(peer.first) == 0; });
@@ -111,8 +193,12 @@ void FindingSource::join(const PeerId& station) {
   // What was on its way was for the station's process before; what is on its disk it still has.
   peer.wants.clear();
   peer.flying = 0;
-  for (const auto& [key, finding] : finding_store_.all())
-    if (!known_.has(key.id, station)) peer.wants.try_emplace(key.id);
+  for (const auto& [key, finding] : finding_store_.all()) {
+    const auto has = known_.revision(key.id, station);
+    const std::uint32_t revision = sendable(key.id).revision;
+    if (!has || *has < revision)
+      peer.wants[key.id] = {.revision = revision, .first = !has, .since = home_.now()};
+  }
   rests_until_.reset();
 }
 
@@ -122,7 +208,7 @@ std::size_t FindingSource::missing(const PeerId& station) const {
 }
 
 std::vector<FindingSource::Due> FindingSource::due(std::span<const PeerId> peers, Time now) {
-  std::map<std::uint64_t, bool> ids;  // Whether it goes alone.
+  std::map<std::uint64_t, Due> ids;
   std::optional<Time> earliest;
   for (const PeerId& station : peers) {
     const auto peer = peers_.find(station);
@@ -131,17 +217,23 @@ std::vector<FindingSource::Due> FindingSource::due(std::span<const PeerId> peers
       if (want.flights > 0) continue;
       if (want.next > now)
         earliest = std::min(earliest.value_or(want.next), want.next);
-      else
-        ids[id] |= want.losses >= kAlone;
+      else {
+        Due& one = ids.try_emplace(id, Due{&sendable(id), false, false, want.since}).first->second;
+        one.alone |= want.losses >= kAlone;
+        one.first |= want.first;
+        one.since = std::min(one.since, want.since);
+      }
     }
   }
   if (ids.empty()) rests_until_ = earliest;
   std::vector<Due> out;
-  for (const auto& [id, alone] : ids) out.push_back({&finding_store_.all().at({params_.robot, id}), alone});
+  for (const auto& [id, one] : ids) out.push_back(one);
   std::sort(out.begin(), out.end(), [](const Due& a, const Due& b) {
     const auto order = [](const Due& due) {
       const Finding& f = *due.finding;
-      return std::tuple(255 - f.importance, due.alone, f.stamp, f.key.id);
+      // A new finding goes before refinements of others, and of those the one that waits longest.
+      return std::tuple(255 - f.importance, due.alone, !due.first, due.first ? Time{} : due.since, f.stamp,
+                        f.key.id);
     };
     return order(a) < order(b);
   });
@@ -160,20 +252,20 @@ std::optional<transfer::Source::Content> FindingSource::next(std::span<const Pee
     return std::nullopt;
   }
   FindingPiece piece{params_.robot, static_cast<std::uint32_t>(size()), overflowed_, {}};
-  std::vector<std::uint64_t>& ids = flights_[++tokens_];
+  std::vector<Carried>& carried = flights_[++tokens_];
   std::size_t bytes = findings::encoded_head(params_.robot);
   for (const Due& one : waiting) {
     const std::size_t more = findings::encoded_size(*one.finding);
-    if (!ids.empty() && (one.alone || bytes + more > max_bytes)) continue;
+    if (!carried.empty() && (one.alone || bytes + more > max_bytes)) continue;
     bytes += more;
     piece.findings.push_back(*one.finding);
-    ids.push_back(one.finding->key.id);
-    if (one.alone || ids.size() >= FindingPiece::kMaxFindings) break;
+    carried.push_back({one.finding->key.id, one.finding->revision});
+    if (one.alone || carried.size() >= FindingPiece::kMaxFindings) break;
   }
   for (const PeerId& station : peers) {
     const auto peer = peers_.find(station);
     if (peer == peers_.end()) continue;
-    for (const std::uint64_t id : ids)
+    for (const auto& [id, revision] : carried)
       if (const auto want = peer->second.wants.find(id); want != peer->second.wants.end())
         if (want->second.flights++ == 0) ++peer->second.flying;
   }
@@ -184,11 +276,18 @@ std::optional<transfer::Source::Content> FindingSource::next(std::span<const Pee
 void FindingSource::acknowledged(const PeerId& station, std::uint64_t token) {
   const auto flight = flights_.find(token);
   if (flight == flights_.end()) return;
-  for (const std::uint64_t id : flight->second) {
-    if (!finding_store_.all().contains({params_.robot, id})) continue;  // Discarded meanwhile.
-    known_.add(id, station);
+  for (const auto& [id, revision] : flight->second) {
+    if (!finding_store_.all().contains(key(id))) continue;  // Discarded meanwhile.
+    known_.add(id, revision, station);
     reported_full_ = false;
-    if (const auto peer = peers_.find(station); peer != peers_.end()) take_from(peer->second, id);
+    const auto peer = peers_.find(station);
+    if (peer == peers_.end()) continue;
+    if (revision >= sendable(id).revision) {
+      take_from(peer->second, id);
+    } else if (const auto want = peer->second.wants.find(id); want != peer->second.wants.end()) {
+      want->second.first = false;  // The newer revision is still to come.
+      want->second.losses = 0;
+    }
   }
 }
 
@@ -196,13 +295,18 @@ void FindingSource::lost(const PeerId& station, std::uint64_t token) {
   const auto flight = flights_.find(token);
   const auto peer = peers_.find(station);
   if (flight == flights_.end() || peer == peers_.end()) return;
-  for (const std::uint64_t id : flight->second) {
-    const auto want = peer->second.wants.find(id);
-    if (want == peer->second.wants.end() || want->second.flights == 0) continue;
-    if (--want->second.flights > 0) continue;
-    --peer->second.flying;
-    if (want->second.losses < 255) ++want->second.losses;
-    want->second.next = home_.now() + pause_after(want->second.losses);
+  for (const auto& [id, revision] : flight->second) {
+    const auto entry = peer->second.wants.find(id);
+    if (entry == peer->second.wants.end()) continue;
+    Want& want = entry->second;
+    if (revision == want.revision) {
+      if (want.flights == 0 || --want.flights > 0) continue;
+      --peer->second.flying;
+    }
+    // The loss of an older revision counts as well: what a station cannot store goes alone, however often it
+    // changes.
+    if (want.losses < 255) ++want.losses;
+    want.next = home_.now() + pause_after(want.losses);
   }
   rests_until_.reset();
 }

@@ -34,13 +34,61 @@ TEST(FindingPiece, ComesBackFromItsBytes) {
   EXPECT_EQ(bytes.size(), encoded_head("r1") + 3 * encoded_size(some(1)));
 }
 
+/// As releases before revisions wrote it.
+store::Bytes piece_of_version_1(const FindingPiece& piece) {
+  store::Packer out;
+  out.put(std::uint8_t{1}).text(piece.robot).put(piece.stored).put(piece.overflowed);
+  out.put(static_cast<std::uint16_t>(piece.findings.size()));
+  for (const Finding& f : piece.findings) {
+    out.put(f.key.id).text(f.kind).put(f.importance);
+    for (const double value : f.position) out.put(value);
+    out.put(f.stamp).text(f.text).put(static_cast<std::uint16_t>(f.data.size())).raw(f.data);
+  }
+  const std::uint32_t sum = crc32c(out.bytes());
+  return out.put(sum).bytes();
+}
+
+TEST(FindingPiece, HasTheRevisionOfEachFinding) {
+  FindingPiece piece = some_piece(4);
+  piece.findings[1].revision = 63;
+  piece.findings[2].revision = 64;
+  piece.findings[2].withdrawn = true;
+  piece.findings[3].revision = std::numeric_limits<std::uint32_t>::max();
+  piece.findings[3].withdrawn = true;
+  std::size_t size = encoded_head("r1");
+  for (const Finding& f : piece.findings) size += encoded_size(f);
+  const store::Bytes bytes = encode(piece);
+  EXPECT_EQ(bytes.size(), size);
+  EXPECT_EQ(decode_piece(bytes).value(), piece);
+  EXPECT_EQ(encoded_size(piece.findings[1]), encoded_size(piece.findings[0])) << "one byte below 64";
+}
+
+TEST(FindingPiece, OfVersion1HasRevision0) {
+  const store::Bytes bytes = piece_of_version_1(some_piece());
+  EXPECT_EQ(bytes.size() + 3, encode(some_piece()).size());
+  EXPECT_EQ(decode_piece(bytes).value(), some_piece());
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_EQ(decode_piece(std::span(bytes).first(size)).reason(), Reason::malformed) << size;
+}
+
+TEST(FindingPiece, WithATooLargeRevisionIsRefused) {
+  store::Bytes bytes = encode(some_piece(1));
+  const std::size_t at = encoded_head("r1") - 4 + 8;
+  ASSERT_EQ(bytes[at], 0);
+  bytes[at] = 0x80;
+  const store::Bytes more{0x80, 0x80, 0x80, 0x40};  // Bit 34.
+  bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 1, more.begin(), more.end());
+  EXPECT_EQ(decode_piece(sealed(bytes)).reason(), Reason::malformed);
+}
+
 TEST(FindingPiece, TheLargestFindingFitsAlone) {
   Finding largest = some(std::numeric_limits<std::uint64_t>::max());
   largest.key.robot = std::string(32, 'r');
   largest.kind = std::string(Finding::kKind, 'k');
   largest.text = std::string(Finding::kText, 't');
   largest.data.assign(Finding::kData, 9);
-  EXPECT_EQ(encoded_size(largest), 607U);
+  largest.revision = std::numeric_limits<std::uint32_t>::max();
+  EXPECT_EQ(encoded_size(largest), 612U);
   const FindingPiece piece{largest.key.robot, 1, 0, {largest}};
   const store::Bytes bytes = encode(piece);
   EXPECT_LE(bytes.size(), FindingPiece::kMaxBytes);
@@ -59,9 +107,11 @@ TEST(FindingPiece, ThatIsCutIsRefusedAtEachLength) {
 }
 
 TEST(FindingPiece, OfAnotherVersionIsNotGuessed) {
-  store::Bytes bytes = encode(some_piece());
-  bytes[0] = 2;
-  EXPECT_EQ(decode_piece(sealed(bytes)).reason(), Reason::wrong_protocol);
+  for (const std::uint8_t version : {0, 3, 255}) {
+    store::Bytes bytes = encode(some_piece());
+    bytes[0] = version;
+    EXPECT_EQ(decode_piece(sealed(bytes)).reason(), Reason::wrong_protocol) << int{version};
+  }
 }
 
 TEST(FindingPiece, WithBytesBehindItsEndIsRefused) {
@@ -72,7 +122,7 @@ TEST(FindingPiece, WithBytesBehindItsEndIsRefused) {
 
 TEST(FindingPiece, WithTooLongCountsIsRefused) {
   // Version, robot, stored and overflowed are before the number of findings.
-  const std::size_t count_at = 1 + 2 + 2 + 4 + 4, kind_at = count_at + 2 + 8;
+  const std::size_t count_at = 1 + 2 + 2 + 4 + 4, kind_at = count_at + 2 + 8 + 1;
   const store::Bytes bytes = encode(some_piece());
   for (const std::size_t at : {std::size_t{1}, count_at, kind_at})
     for (const int value : {0, 25, 33, 255}) {

@@ -25,7 +25,10 @@ class FindingStoreTest : public testing::Test {
     finding_store = std::make_unique<FindingStore>(
         params, disk, *strand, nullptr,
         FindingStore::Outputs{
-            [this](const Key& key) { stored.push_back(key.id); },
+            [this](const Key& key, std::uint32_t revision) {
+              stored.push_back(key.id);
+              revisions.push_back(revision);
+            },
             [this](bool failing, const std::string&) { reported.push_back(failing ? "failing" : "works"); }});
     loaded = finding_store->load();
   }
@@ -36,6 +39,7 @@ class FindingStoreTest : public testing::Test {
   std::shared_ptr<Executor> strand{machine->strand("command")};
   std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
   std::vector<std::uint64_t> stored{};
+  std::vector<std::uint32_t> revisions{};
   std::vector<std::string> reported{};
   std::unique_ptr<FindingStore> finding_store{};
   LoadReport loaded{};
@@ -54,7 +58,7 @@ TEST_F(FindingStoreTest, KeepsOverARestart) {
   EXPECT_EQ(finding_store->all().at({"r1", 2}), some(2));
 }
 
-TEST_F(FindingStoreTest, IsASet) {
+TEST_F(FindingStoreTest, HasOneFindingOfAKeyAndOneContentOfARevision) {
   make();
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(finding_store->put(some(1)));
   Finding other = some(1);
@@ -62,6 +66,74 @@ TEST_F(FindingStoreTest, IsASet) {
   EXPECT_TRUE(finding_store->put(other));
   EXPECT_EQ(finding_store->all().size(), 1u);
   EXPECT_EQ(finding_store->all().at({"r1", 1}), some(1)) << "it stays as it was first";
+}
+
+Finding revised(std::uint64_t id, std::uint32_t revision) {
+  Finding f = some(id);
+  f.revision = revision;
+  f.text = "revision " + std::to_string(revision);
+  return f;
+}
+
+TEST_F(FindingStoreTest, TheNewestRevisionReplacesOlderOnesAlsoOnTheDisk) {
+  make();
+  for (const std::uint32_t revision : {0, 3, 2, 5, 4, 5, 0}) {
+    EXPECT_TRUE(finding_store->put(revised(1, revision)));
+    run(20ms);
+  }
+  EXPECT_EQ(finding_store->all().at({"r1", 1}), revised(1, 5));
+  EXPECT_THAT(revisions, ElementsAre(0, 3, 5));
+  make();
+  EXPECT_EQ(finding_store->all().at({"r1", 1}), revised(1, 5));
+  EXPECT_TRUE(finding_store->put(revised(1, 4)));
+  run(20ms);
+  make();
+  EXPECT_EQ(finding_store->all().at({"r1", 1}), revised(1, 5)) << "nor over a restart";
+}
+
+TEST_F(FindingStoreTest, ARevisionThatComesDuringAWriteIsWrittenNext) {
+  make();
+  EXPECT_TRUE(finding_store->put(revised(1, 1)));
+  run(1ms);
+  EXPECT_TRUE(finding_store->put(revised(1, 2)));
+  run(3ms);
+  EXPECT_THAT(revisions, ElementsAre(1)) << "the batch had the revision before";
+  EXPECT_FALSE(finding_store->is_stored({"r1", 1}));
+  run(20ms);
+  EXPECT_THAT(revisions, ElementsAre(1, 2));
+  EXPECT_TRUE(finding_store->is_stored({"r1", 1}));
+  make();
+  EXPECT_EQ(finding_store->all().at({"r1", 1}), revised(1, 2));
+}
+
+TEST_F(FindingStoreTest, FindingsThatChangeAllTheTimeDelayNoOther) {
+  make();
+  for (std::uint64_t id = 1; id <= 20; ++id) EXPECT_TRUE(finding_store->put(revised(id, 1)));
+  EXPECT_TRUE(finding_store->put(some(100)));
+  for (std::uint32_t revision = 2; revision < 12; ++revision) {
+    for (std::uint64_t id = 1; id <= 20; ++id) EXPECT_TRUE(finding_store->put(revised(id, revision)));
+    run(4ms);
+  }
+  EXPECT_TRUE(finding_store->is_stored({"r1", 100}));
+}
+
+TEST_F(FindingStoreTest, AFullStoreTakesNewRevisions) {
+  make({.max_findings = 1});
+  EXPECT_TRUE(finding_store->put(revised(1, 0)));
+  EXPECT_TRUE(finding_store->put(revised(1, 1)));
+  EXPECT_FALSE(finding_store->put(some(2)));
+  EXPECT_EQ(finding_store->all().at({"r1", 1}), revised(1, 1));
+}
+
+TEST_F(FindingStoreTest, ReadsFilesOfVersion1AndReplacesThem) {
+  disk->plant(file_name({"r1", 7}), file_of_version_1(some(7)));
+  make();
+  EXPECT_EQ(loaded, LoadReport{});
+  EXPECT_EQ(finding_store->all().at({"r1", 7}), some(7));
+  EXPECT_TRUE(finding_store->put(revised(7, 1)));
+  run(20ms);
+  make();
+  EXPECT_EQ(finding_store->all().at({"r1", 7}), revised(7, 1));
 }
 
 TEST_F(FindingStoreTest, IsBounded) {
@@ -107,7 +179,7 @@ TEST_F(FindingStoreTest, DamagedFilesAreStoredUnderAnotherName) {
 }
 
 TEST_F(FindingStoreTest, FilesOfANewerVersionStayAsTheyAre) {
-  const store::Bytes newer = store::encode_envelope({{'F', 'I', 'N', 'D'}, 2, 1024}, 0, store::Bytes(40, 1));
+  const store::Bytes newer = store::encode_envelope({{'F', 'I', 'N', 'D'}, 3, 1024}, 0, store::Bytes(40, 1));
   disk->plant(file_name({"r1", 2}), newer);
   make();
   EXPECT_EQ(loaded.newer, 1u);
@@ -137,9 +209,15 @@ TEST_F(FindingStoreTest, WithALowerBoundTheMostImportantAreLoadedAndNoneIsDelete
   make();
   for (std::uint64_t id = 1; id <= 6; ++id)
     EXPECT_TRUE(finding_store->put(some(id, static_cast<std::uint8_t>(id))));
+  for (const std::uint32_t revision : {7, 3}) {
+    Finding f = some(revision == 7 ? 2 : 3, revision == 7 ? 2 : 3);
+    f.revision = revision;
+    EXPECT_TRUE(finding_store->put(f));
+  }
   run(50ms);
   make({.max_findings = 2});
   EXPECT_EQ(loaded.surplus, 4u);
+  EXPECT_EQ(loaded.surplus_revision, 7u);
   EXPECT_EQ(finding_store->all().size(), 2u);
   EXPECT_TRUE(finding_store->all().contains({"r1", 6}));
   EXPECT_TRUE(finding_store->all().contains({"r1", 5}));
@@ -195,7 +273,7 @@ TEST(FindingStoreLive, WritesUnsavedFindingsAtACleanEnd) {
   home->post([&] {
     finding_store = std::make_unique<FindingStore>(
         FindingStoreParams{}, disk, *home, writer,
-        FindingStore::Outputs{[](const Key&) {}, [](bool, const std::string&) {}});
+        FindingStore::Outputs{[](const Key&, std::uint32_t) {}, [](bool, const std::string&) {}});
     for (std::uint64_t id = 1; id <= 100; ++id) EXPECT_TRUE(finding_store->put(some(id)));
     reported.set_value();
   });
@@ -222,7 +300,8 @@ TEST(FindingStoreLive, ALostCompletionDoesNotEndItsWrites) {
   home->post([&] {
     finding_store = std::make_unique<FindingStore>(
         FindingStoreParams{.retry = 50ms}, disk, *home, writer,
-        FindingStore::Outputs{[&](const Key&) { saved.set_value(); }, [](bool, const std::string&) {}});
+        FindingStore::Outputs{[&](const Key&, std::uint32_t) { saved.set_value(); },
+                              [](bool, const std::string&) {}});
     EXPECT_TRUE(finding_store->put(some(1)));
     began.set_value();
     go.get_future().wait();

@@ -27,6 +27,29 @@ TEST(Finding, ComesBackFromItsFile) {
   EXPECT_EQ(from_file(to_file(smallest)), smallest);
 }
 
+TEST(Finding, ComesBackFromItsFileWithItsRevision) {
+  Finding f = some(7);
+  f.revision = std::numeric_limits<std::uint32_t>::max();
+  f.withdrawn = true;
+  EXPECT_EQ(from_file(to_file(f)), f);
+}
+
+TEST(Finding, OfAFileOfVersion1WasNeverChanged) {
+  const FindingFile file = read_finding(file_of_version_1(some(7)));
+  EXPECT_EQ(file.found, store::LoadStatus::good);
+  EXPECT_EQ(file.finding, some(7));
+  EXPECT_EQ(read_finding(store::encode_envelope({{'F', 'I', 'N', 'D'}, 0, 1024}, 0, store::Bytes(9))).found,
+            store::LoadStatus::older);
+}
+
+TEST(Finding, HasTheSameContentInAnyRevision) {
+  Finding f = some(7);
+  f.revision = 4;
+  EXPECT_TRUE(same_content(f, some(7)));
+  f.withdrawn = true;
+  EXPECT_FALSE(same_content(f, some(7)));
+}
+
 TEST(Finding, HasAFileOfItsOwn) {
   EXPECT_EQ(file_name({"r1", 0x1f}), "finding-r1-000000000000001f");
   EXPECT_NE(file_name({"r1", 1}), file_name({"r2", 1}));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/findings/finding.hpp"
+#include "core/store/pack.hpp"
 
 namespace adit::findings {
 
@@ -14,6 +15,15 @@ inline Finding some(std::uint64_t id, std::uint8_t importance = 1, const std::st
   f.text = "a red backpack";
   f.data = {1, 2, 3};
   return f;
+}
+
+/// The file of a finding as releases before revisions wrote it.
+inline store::Bytes file_of_version_1(const Finding& f) {
+  store::Packer out;
+  out.text(f.key.robot).put(f.key.id).text(f.kind).put(f.importance);
+  for (const double value : f.position) out.put(value);
+  out.put(f.stamp).text(f.text).put(static_cast<std::uint16_t>(f.data.size())).raw(f.data);
+  return store::encode_envelope({{'F', 'I', 'N', 'D'}, 1, 1024}, 0, out.bytes());
 }
 
 }  // namespace adit::findings

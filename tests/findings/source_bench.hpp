@@ -41,6 +41,8 @@ class FindingSourceTest : public testing::Test {
     std::unique_ptr<station::FindingDesk> desk{};
     bool heard{true}, answers{true};
     std::vector<std::string> trouble{};
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> changes{};  ///< Ids and revisions.
+    std::size_t found{};
   };
   FindingSourceTest() {
     start_robot();
@@ -72,8 +74,9 @@ class FindingSourceTest : public testing::Test {
     op.desk = std::make_unique<station::FindingDesk>(
         station::DeskParams{most}, op.disk, *strand,
         station::FindingDesk::Outputs{
-            [](const findings::Finding&) {},
-            [&op](const std::string& code, const std::string&) { op.trouble.push_back(code); }});
+            [&op](const findings::Finding&) { ++op.found; },
+            [&op](const std::string& code, const std::string&) { op.trouble.push_back(code); },
+            [&op](const findings::Finding& f) { op.changes.emplace_back(f.key.id, f.revision); }});
     (void)op.desk->load();
   }
   void send() {
@@ -81,19 +84,37 @@ class FindingSourceTest : public testing::Test {
       if (piece.kind == transfer::Kind::findings) {
         const auto decoded = findings::decode_piece(piece.data);
         ASSERT_TRUE(decoded.ok());
-        for (const findings::Finding& f : decoded->findings) sent.push_back(f.key.id);
+        for (const findings::Finding& f : decoded->findings) {
+          sent.push_back(f.key.id);
+          revisions_sent.push_back(f.revision);
+        }
+        if (on_sent) on_sent(piece.id, *decoded);
         largest = std::max(largest, piece.data.size());
       }
       kinds.push_back(piece.kind);
       for (Operator& op : ops)
         if (op.heard && !random.chance(loss))
-          op.pieces->take(
-              {"r1", session, piece.id, static_cast<std::uint8_t>(piece.kind), piece.waiting, piece.data});
+          transmit([&op, piece, number = session] {
+            op.pieces->take(
+                {"r1", number, piece.id, static_cast<std::uint8_t>(piece.kind), piece.waiting, piece.data});
+          });
     }
+  }
+  /// Delivers at once, or where the link repeats and reorders later, and perhaps twice.
+  void transmit(const std::function<void()>& deliver) {
+    for (int copies = random.chance(repeats) ? 2 : 1; copies > 0; --copies)
+      if (random.chance(delays))
+        air.emplace(strand->now() + random.below(60) * 100ms, deliver);
+      else
+        deliver();
   }
   void run(Duration span) {
     for (const Time end = strand->now() + span; strand->now() < end;
          scheduler.run_until(scheduler.elapsed() + 50ms)) {
+      while (!air.empty() && air.begin()->first <= strand->now()) {
+        air.begin()->second();
+        air.erase(air.begin());
+      }
       source->tick(strand->now());
       send();
       for (Operator& op : ops) {
@@ -101,8 +122,11 @@ class FindingSourceTest : public testing::Test {
         if (!receipts || !op.heard || !op.answers || random.chance(loss)) continue;
         transfer::Ack ack{op.id, op.start, {}};
         if (!receipts->empty()) ack.receipt = receipts->front().second;
-        sender->acknowledged(ack, strand->now());
-        source->heard(op.id, strand->now());
+        transmit([this, &op, ack] {
+          sender->acknowledged(ack, strand->now());
+          if (on_receipt) on_receipt(op, ack.receipt);
+          source->heard(op.id, strand->now());
+        });
       }
     }
   }
@@ -110,6 +134,13 @@ class FindingSourceTest : public testing::Test {
     const auto made = source->report(findings::some(id, importance));
     return made ? *made : 0;
   }
+  /// A finding with content that differs for each number.
+  static findings::Finding content(std::uint64_t id, int number) {
+    findings::Finding f = findings::some(id);
+    f.text = "seen " + std::to_string(number) + " times";
+    return f;
+  }
+  findings::Finding at(const Operator& op, std::uint64_t id) const { return op.desk->all().at({"r1", id}); }
   /// Ends and begins the silence of the stations, longer than a sender waits for one.
   void gap(Duration span) {
     for (Operator& op : ops) op.heard = false;
@@ -122,7 +153,8 @@ class FindingSourceTest : public testing::Test {
   std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
   FindingParams params{.robot = "r1", .max_findings = 8};
   wire::SenderState link{};
-  double loss{};
+  double loss{}, repeats{}, delays{};
+  std::multimap<Time, std::function<void()>> air{};
   Random random{3};
   std::array<Operator, 2> ops{};
   std::unique_ptr<EndlessMap> map{};
@@ -130,6 +162,9 @@ class FindingSourceTest : public testing::Test {
   std::unique_ptr<transfer::Sender> sender{};
   std::uint32_t session{};
   std::vector<std::uint64_t> sent{};
+  std::vector<std::uint32_t> revisions_sent{};
+  std::function<void(std::uint32_t piece, const findings::FindingPiece&)> on_sent{};
+  std::function<void(const Operator&, const transfer::Receipt&)> on_receipt{};
   std::vector<transfer::Kind> kinds{};
   std::size_t largest{};
   int full{};
