@@ -62,13 +62,15 @@ class Found : public testing::Test {
     (void)desk.acks.write(encode(contract::BulkAck{
         .station = desk.op->name, .station_id = desk.op->id, .start = 7, .receipts = *due}));
   }
-  void report(std::uint64_t id) {
+  static findings::Finding finding(std::uint64_t id, const std::string& text = "") {
     findings::Finding f;
     f.key.id = id;
     f.kind = "artifact";
     f.position = {1, 2, 3};
-    bench->agent().report(f);
+    f.text = text;
+    return f;
   }
+  void report(std::uint64_t id) { bench->agent().report(finding(id)); }
   std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
   std::unique_ptr<AgentBench> bench{};
   AgentBench::Operator *op1{}, *op2{};
@@ -107,6 +109,27 @@ TEST_F(Found, SurvivesADeathOfTheAgent) {
   bench->run(10s);
   ASSERT_GE(desks[0].heard.size(), 1u);
   EXPECT_EQ(desks[0].heard[0].findings[0].key.id, 7u);
+}
+
+TEST_F(Found, IsChangedAndWithdrawn) {
+  desks[0].stores = desks[1].stores = true;
+  bench->agent().update(finding(7));  // It is reported, as there is none.
+  bench->run(5s);
+  bench->agent().update(finding(7, "nearer"));
+  bench->run(5s);
+  bench->agent().withdraw(7);
+  bench->run(5s);
+  std::vector<findings::Finding> revisions(3);
+  for (const findings::FindingPiece& piece : desks[0].heard)
+    for (const findings::Finding& f : piece.findings) revisions.at(f.revision) = f;
+  EXPECT_EQ(revisions[0].text, "");
+  EXPECT_EQ(revisions[1].text, "nearer");
+  EXPECT_GT(revisions[1].stamp, revisions[0].stamp);
+  EXPECT_TRUE(revisions[2].withdrawn);
+  EXPECT_EQ(revisions[2].text, "nearer");
+  bench->agent().withdraw(8);
+  bench->run(1s);
+  EXPECT_THAT(op1->notice_codes(), Contains("finding_refused"));
 }
 
 TEST_F(Found, AnotherParticipantCannotSayWhatAStationHas) {

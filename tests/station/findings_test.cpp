@@ -93,6 +93,58 @@ TEST_F(FindingsTest, ARepeatIsAcknowledgedAgainAndListedOnce) {
   EXPECT_EQ(listed(), 1u);
 }
 
+TEST_F(FindingsTest, ThatChangeAreListedWithTheirNewestContentAndNotifiedOnce) {
+  const auto notices = [this] {
+    const auto& all = op_->fleet().notices();
+    return std::count_if(all.begin(), all.end(), [](const auto& notice) { return notice.code == "found"; });
+  };
+  find(1);
+  EXPECT_EQ(notices(), 1);
+  EXPECT_EQ(execute("finding 1 confirm").exit_code, 0);
+  findings::Finding f = found(1);
+  f.revision = 4;
+  f.position = {7, 8, 9};
+  f.text = "a blue backpack";
+  EXPECT_TRUE(acknowledged(send(findings::encode({"r1", 5, 0, {f}}))));
+  f.revision = 3;
+  f.text = "a green backpack";
+  EXPECT_TRUE(acknowledged(send(findings::encode({"r1", 5, 0, {f}})))) << "a newer one is on the disk";
+  EXPECT_EQ(notices(), 1);
+  for (int i = 0; i < 2; ++i) {
+    const Outcome outcome = execute("findings");
+    ASSERT_EQ(outcome.json["findings"].size(), 1U);
+    const auto row = outcome.json["findings"][0];
+    EXPECT_EQ(row["text"], "a blue backpack");
+    EXPECT_EQ(row["position"][0], 7);
+    EXPECT_EQ(row["verdict"], "confirmed");
+    EXPECT_EQ(row["number"], 1);
+    EXPECT_FALSE(row.contains("withdrawn"));
+    begin_station();
+    run_for(2s);
+  }
+}
+
+TEST_F(FindingsTest, ThatAreWithdrawnStayInTheList) {
+  find(1);
+  find(2, 9, "person");
+  EXPECT_EQ(execute("finding 2 reject").exit_code, 0);
+  for (std::uint64_t id = 1; id <= 2; ++id) {
+    findings::Finding f = found(id);
+    f.revision = 1;
+    f.withdrawn = true;
+    EXPECT_TRUE(acknowledged(send(findings::encode({"r1", 5, 0, {f}}))));
+  }
+  const Outcome outcome = execute("findings");
+  EXPECT_THAT(outcome.text, HasSubstr(" withdrawn"));
+  EXPECT_THAT(outcome.text, HasSubstr("rejected, withdrawn"));
+  ASSERT_EQ(outcome.json["findings"].size(), 2U);
+  EXPECT_EQ(outcome.json["findings"][0]["withdrawn"], true);
+  findings::Finding back = found(1);
+  back.revision = 2;
+  EXPECT_TRUE(acknowledged(send(findings::encode({"r1", 5, 0, {back}}))));
+  EXPECT_FALSE(execute("findings").json["findings"][0].contains("withdrawn"));
+}
+
 TEST_F(FindingsTest, SurviveARestartOfTheStation) {
   find(1);
   begin_station();

@@ -86,7 +86,8 @@ class ReportDraw {
               text(),
               maybe(),
               static_cast<Verdict>(below(3)),
-              text()};
+              text(),
+              flag()};
     report.at_robots.resize(below(3));
     for (FoundAtRobot& robot : report.at_robots) robot = {text(), count(), count(), count()};
     return report;
