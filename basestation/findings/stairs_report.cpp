@@ -63,7 +63,7 @@ StairsReport stairs_report(const FindingDesk& desk, const FindingBook& book, con
   StairsReport report;
   std::vector<findings::SeenStairs> seen;
   for (const auto& [key, finding] : desk.all()) {
-    if (finding.kind != findings::kStairs) continue;
+    if (finding.kind != findings::kStairs || finding.withdrawn) continue;
     if (const auto stairs = findings::stairs_of(finding))
       seen.push_back({key, *stairs});
     else

@@ -5,8 +5,7 @@
 
 namespace adit {
 
-/// A straight flight of equal steps, in a frame whose z points up. What it does not state, its frame and who
-/// saw it, belongs to whoever holds it.
+/// A straight flight of equal steps, in a frame whose z points up.
 struct Staircase {
   static constexpr int kLeastSteps = 3, kMostSteps = 100;
   static constexpr double kLeastRise = 0.10, kMostRise = 0.25;   ///< m

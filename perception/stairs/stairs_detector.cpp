@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "core/geometry/pose.hpp"
 
@@ -19,7 +17,8 @@ constexpr std::size_t kPeriods = 3;      // That are tried: a half or a double o
 constexpr std::size_t kMostInSlice = 60;
 constexpr std::size_t kMostForDirection = 5000;  // Points for the fit.
 constexpr double kUnequal = 0.015;  // Root mean square of the faces' offsets from equal steps, m.
-constexpr double kLeastClean = 0.6, kMostHidden = 0.2;
+constexpr double kBetter = 1.25;  // Than a plane, in spread: many points make any difference certain.
+constexpr double kLeastClean = 0.6;
 
 }  // namespace
 
@@ -69,9 +68,6 @@ bool StairsDetector::find_direction(const SlopeRegion& region, Eigen::Vector2f& 
     }
   }
   uphill = best;
-  if (getenv("DBG"))
-    std::printf("  periodic %.2f at %.2f core %zu around %zu\n", most, std::atan2(best.y(), best.x()),
-                core_.size(), around_.size());
   return most > kLeastPeriodic;
 }
 
@@ -100,37 +96,24 @@ std::optional<Staircase> StairsDetector::judge(const SlopeRegion& region,
   }
   collect(region, uphill, 1);
   const Eigen::Vector2f left(-uphill.y(), uphill.x());
-  const float core_right = extent_.right, core_left = extent_.left;
-  const SlopePoint eye_here = place_of_eye(uphill);
   std::optional<Staircase> best;
   double least_cost = 0.0;
-  for (const StepFit& fit : fitter_.fit(core_, region.slope, eye_here, kPeriods)) {
+  for (const StepFit& fit : fitter_.fit(core_, region.slope, place_of_eye(uphill), kPeriods)) {
     const StepModel& m = fit.model;
-    const bool debug = getenv("DBG") != nullptr;
-    if (debug)
-      std::printf("  fit run %.3f rise %.3f turn %.3f spread %.4f share %.2f\n", m.run, m.rise, m.turn,
-                  fit.spread, fit.share);
     if (m.run < Staircase::kLeastRun || m.run > Staircase::kMostRun || m.rise < Staircase::kLeastRise ||
         m.rise > Staircase::kMostRise || std::abs(m.turn) > 0.3)
       continue;
-    const auto seen = evidence_.weigh(fit, around_, core_right, core_left, eye_here);
+    const auto seen = evidence_.weigh(fit, around_, extent_.right, extent_.left);
     if (!seen) continue;
-    if (debug)
-      std::printf(
-          "    chain %d..%d faces %d width %.2f spread %.4f plane %.4f loose %.4f n %.0f clean %.2f hidden "
-          "%.2f\n",
-          seen->first, seen->last, seen->faces, seen->left - seen->right, seen->spread, seen->plane_spread,
-          seen->loose_spread, seen->independent, seen->clean, seen->hidden);
     const double width = seen->left - seen->right;
-    if (width < Staircase::kLeastWidth || seen->clean < kLeastClean || seen->hidden > kMostHidden) continue;
+    if (width < Staircase::kLeastWidth || seen->clean < kLeastClean) continue;
     // Deviations below a centimetre are those of any building.
     constexpr double floor = 0.01;
     const double n = seen->independent, s = std::hypot(seen->spread, floor);
-    const double against_plane =
-        n * std::log(std::hypot(seen->plane_spread, floor) / s) * 2 - 2 * std::log(n);
+    const double better = std::hypot(seen->plane_spread, floor) / s;
+    const double against_plane = 2 * n * std::log(better) - 2 * std::log(n);
     const double unequal = seen->spread * seen->spread - seen->loose_spread * seen->loose_spread;
-    if (debug) std::printf("    plane %.0f unequal %.4f\n", against_plane, std::sqrt(std::max(0.0, unequal)));
-    if (!(against_plane > 10.0) || unequal > kUnequal * kUnequal) continue;
+    if (!(against_plane > 10.0) || better < kBetter || unequal > kUnequal * kUnequal) continue;
     if (best && fit.cost() >= least_cost) continue;
     least_cost = fit.cost();
     Staircase stairs;
@@ -175,10 +158,6 @@ std::vector<Staircase> StairsDetector::detect(std::span<const Eigen::Vector3f> p
   std::vector<Staircase> found;
   cells_.build(points, eye);
   for (const SlopeRegion& region : regions_.find(cells_)) {
-    if (getenv("DBG"))
-      std::printf("region at %.2f %.2f %.2f uphill %.2f slope %.2f cells %zu\n", region.centre.x(),
-                  region.centre.y(), region.centre.z(), std::atan2(region.uphill.y(), region.uphill.x()),
-                  region.slope, region.cells.size());
     if (auto stairs = judge(region, cells_.points(), eye, hides)) found.push_back(*stairs);
   }
   std::stable_sort(found.begin(), found.end(), [&](const Staircase& a, const Staircase& b) {

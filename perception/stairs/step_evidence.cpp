@@ -19,6 +19,8 @@ void StepEvidence::count_core(double right, double left, double tolerance) {
   risers_.fill({});
   treads_.fill({});
   above_risers_.fill(0);
+  before_risers_.fill(0);
+  const double margin = std::clamp(tolerance, 0.15 * model_.rise, 0.4 * model_.rise);
   for (const Placed& p : placed_) {
     if (p.v < right || p.v > left) continue;
     const int slot = p.step + kMiddle;
@@ -35,6 +37,12 @@ void StepEvidence::count_core(double right, double left, double tolerance) {
       face.strips.set(strip);
       face.count += 1;
     }
+    // Before a riser, nothing is at its height: a floor that leans goes on there.
+    const int at_height = model_.riser_at(p.h);
+    const double before = model_.riser_u(at_height) - p.u;
+    if (before > tolerance && before < 0.6 * model_.run && model_.tread_h(at_height) - p.h > margin &&
+        p.h - model_.tread_h(at_height - 1) > margin && std::abs(at_height) < kMiddle)
+      ++before_risers_[static_cast<std::size_t>(at_height + kMiddle)];
     // A wall goes on above its riser.
     for (const int k : {slot - 1, slot, slot + 1}) {
       const int riser = k - kMiddle;
@@ -52,7 +60,7 @@ bool StepEvidence::seen(const Face& face) const {
 StepEvidence::Seen StepEvidence::riser_seen(int k) const {
   const auto slot = static_cast<std::size_t>(k + kMiddle);
   const Face &riser = risers_[slot], &below = treads_[slot - 1], &above = treads_[slot];
-  const bool wall = above_risers_[slot] > riser.count;
+  const bool wall = above_risers_[slot] > riser.count || before_risers_[slot] > riser.count / 2;
   if ((seen(riser) && !wall) || (seen(below) && seen(above))) return Seen::clearly;
   const auto some = [](const Face& face) { return face.count >= kSome; };
   return (some(riser) && !wall) || (some(below) && some(above)) ? Seen::hardly : Seen::no;
@@ -69,13 +77,17 @@ bool StepEvidence::find_chain(FlightEvidence& out) const {
       if (here != Seen::no) last = n;
       if (here == Seen::clearly) ++found;
     }
-    // At its ends, what is hardly seen must lead to something that is.
+    // At its ends, the floor, or a tread, must be in view; above the eye, a riser is enough.
     int first = k, end = last;
     const auto face = [](const std::array<Face, kSteps>& faces, int step) -> const Face& {
       return faces[static_cast<std::size_t>(step + kMiddle)];
     };
-    while (first < end && riser_seen(first) != Seen::clearly && !seen(face(treads_, first - 1))) ++first;
-    while (end > first && riser_seen(end) != Seen::clearly && !seen(face(treads_, end))) --end;
+    const auto clearly = [&](int riser) { return riser_seen(riser) == Seen::clearly; };
+    while (first < end && !seen(face(treads_, first - 1)) && !(clearly(first) && !model_.sees_tread(first - 1)))
+      ++first;
+    while (end > first && !seen(face(treads_, end)) && !(clearly(end) && !model_.sees_well(end))) --end;
+    found = 0;
+    for (int n = first; n <= end; ++n) found += clearly(n) ? 1 : 0;
     if (found > best) {
       best = found;
       out.first = first;
@@ -145,11 +157,11 @@ bool StepEvidence::find_width(FlightEvidence& out, double tolerance, double midd
   return true;
 }
 
-void StepEvidence::compare(FlightEvidence& out, double tolerance, const SlopePoint& eye) {
+void StepEvidence::compare(FlightEvidence& out, double tolerance) {
   const double begin = model_.riser_u(out.first), end = model_.riser_u(out.last) + model_.run;
   // The plane through the points themselves.
   double n = 0, su = 0, sh = 0, suu = 0, suh = 0, shh = 0;
-  double squares = 0, on = 0, beside = 0, treads = 0, hidden = 0;
+  double squares = 0, on = 0, beside = 0;
   risers_.fill({});
   treads_.fill({});
   for (const Placed& p : placed_) {
@@ -167,10 +179,6 @@ void StepEvidence::compare(FlightEvidence& out, double tolerance, const SlopePoi
     Face& face = (p.riser ? risers_ : treads_)[static_cast<std::size_t>(p.step + kMiddle)];
     face.count += 1, face.sum += p.off, face.squares += double{p.off} * p.off;
     face.strips.set(static_cast<std::size_t>(std::clamp((p.v - out.right) / kStrip, 0.0, kStrips - 1.0)));
-    if (!p.riser) {
-      treads += 1;
-      hidden += eye.z() < model_.tread_h(p.step) - 0.05 ? 1 : 0;
-    }
   }
   if (n < 10) return;
   const double cuu = suu - su * su / n, cuh = suh - su * sh / n, chh = shh - sh * sh / n;
@@ -187,12 +195,10 @@ void StepEvidence::compare(FlightEvidence& out, double tolerance, const SlopePoi
       }
   out.loose_spread = std::sqrt(std::max(0.0, loose) / n);
   out.clean = on / (on + beside);
-  out.hidden = treads > 0 ? hidden / treads : 0.0;
 }
 
 std::optional<FlightEvidence> StepEvidence::weigh(const StepFit& fit, std::span<const SlopePoint> points,
-                                                  double core_right, double core_left,
-                                                  const SlopePoint& eye) {
+                                                  double core_right, double core_left) {
   model_ = fit.model;
   placed_.clear();
   for (const SlopePoint& p : points) {
@@ -208,7 +214,7 @@ std::optional<FlightEvidence> StepEvidence::weigh(const StepFit& fit, std::span<
   core_strips_ = std::max(1.0, (core_left - core_right) / kCoreStrip);
   if (!find_chain(out)) return std::nullopt;
   if (!find_width(out, tolerance, (core_left + core_right) / 2)) return std::nullopt;
-  compare(out, tolerance, eye);
+  compare(out, tolerance);
   return out;
 }
 

@@ -21,7 +21,6 @@ struct FlightEvidence {
   double loose_spread{};   ///< From steps each of which has a place and height of its own, as of boxes.
   double independent{};    ///< Number of independent measurements.
   double clean{};          ///< Share of the points beside the steps that lie on them.
-  double hidden{};         ///< Share of the points on treads that the eye could not see.
 };
 
 /// Finds which steps of a model exist.
@@ -29,9 +28,8 @@ class StepEvidence {
  public:
   /// @param points  Of the region; `core_right` to `core_left`: the part across in which the region lies for
   /// sure, m.
-  /// @param eye     Of the sensor, in the same frame.
   std::optional<FlightEvidence> weigh(const StepFit& fit, std::span<const SlopePoint> points,
-                                      double core_right, double core_left, const SlopePoint& eye);
+                                      double core_right, double core_left);
 
  private:
   static constexpr int kSteps = 64, kMiddle = kSteps / 2;
@@ -55,13 +53,13 @@ class StepEvidence {
   Seen riser_seen(int k) const;
   bool find_chain(FlightEvidence& out) const;
   bool find_width(FlightEvidence& out, double tolerance, double middle);
-  void compare(FlightEvidence& out, double tolerance, const SlopePoint& eye);
+  void compare(FlightEvidence& out, double tolerance);
 
   StepModel model_{};
   double core_strips_{};
   std::vector<Placed> placed_{};
   std::array<Face, kSteps> risers_{}, treads_{};
-  std::array<int, kSteps> above_risers_{};
+  std::array<int, kSteps> above_risers_{}, before_risers_{};
 };
 
 }  // namespace adit::perception

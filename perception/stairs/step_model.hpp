@@ -28,6 +28,8 @@ struct StepModel {
   int riser_at(double h) const { return static_cast<int>(std::ceil((h - edge_h) / rise)); }
 
   bool sees_tread(int k) const { return tread_h(k) < eye_h - 0.02; }
+  /// Whether a tread is so far below the sensor that its points are many.
+  bool sees_well(int k) const { return tread_h(k) < eye_h - 0.3; }
   bool sees_riser(int k) const { return riser_u(k) > eye_u; }
 
   /// The nearest riser or tread that the sensor sees, and the signed distance from its face, m: uphill of a
