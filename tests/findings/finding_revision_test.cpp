@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Findings that change: each station gets the newest revision, and no revision has two contents.
+#include <future>
+
+#include "core/exec/live_runtime.hpp"
+#include "core/store/file_disk.hpp"
 #include "tests/findings/source_bench.hpp"
+#include "tests/store/scratch_folder.hpp"
 
 namespace adit::agent {
 namespace {
@@ -269,6 +274,21 @@ TEST_F(FindingSourceTest, AStationThatCannotStoreAChangingFindingGetsTheOthers) 
   EXPECT_EQ(source->missing(ops[0].id), 0U);
 }
 
+TEST_F(FindingSourceTest, OneThatAStationCannotStoreGoesSeldomHoweverOftenItChanges) {
+  ops[1].heard = false;
+  latency = 2s;  // A loss is noticed only after the next change.
+  report(1);
+  run(20s);
+  ops[0].disk->set_refused(findings::file_name({"r1", 1}), true);
+  sent.clear();
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_TRUE(source->update(content(1, i)).ok());
+    run(1s);
+  }
+  EXPECT_GE(sent.size(), 10U);
+  EXPECT_LE(sent.size(), 25U);
+}
+
 TEST_F(FindingSourceTest, AStationAcknowledgesARevisionOnceItOrANewerOneIsOnItsDisk) {
   int acknowledged = 0;
   const auto hear = [&](std::uint32_t revision) {
@@ -313,6 +333,36 @@ TEST_F(FindingSourceTest, AStationThatGetsOtherContentOfARevisionKeepsWhatItHas)
   }
   EXPECT_EQ(at(ops[0], 1).text, "seen 1 times");
   EXPECT_THAT(ops[0].changes, IsEmpty());
+}
+
+TEST(FindingSourceLive, AChangeThatWaitsIsWrittenAtACleanEnd) {
+  const store::ScratchFolder folder;
+  LiveRuntime runtime;
+  auto writer = runtime.strand("disk");
+  auto home = runtime.strand("home");
+  const std::shared_ptr<store::Disk> files = store::FileDisk::open(folder.path()).value();
+  std::unique_ptr<FindingSource> robot;
+  std::promise<void> changed, written;
+  home->post([&] {
+    robot = std::make_unique<FindingSource>(
+        FindingParams{.robot = "r1"}, files, *home, writer,
+        FindingSource::Outputs{[](const std::string&) {}, [](bool, const std::string&) {}});
+    EXPECT_TRUE(robot->report(some(1)).ok());
+    findings::Finding f = some(1);
+    f.text = "nearer";
+    EXPECT_TRUE(robot->update(f).ok());
+    changed.set_value();
+  });
+  changed.get_future().wait();
+  home->end();
+  robot->flush();
+  writer->post([&] { written.set_value(); });
+  ASSERT_EQ(written.get_future().wait_for(20s), std::future_status::ready);
+  writer->end();
+  const auto finding = findings::from_file(files->read(findings::file_name({"r1", 1})).value().value());
+  ASSERT_TRUE(finding);
+  EXPECT_EQ(finding->text, "nearer");
+  EXPECT_EQ(finding->revision, 1U);
 }
 
 }  // namespace

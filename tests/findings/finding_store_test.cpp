@@ -108,10 +108,10 @@ TEST_F(FindingStoreTest, ARevisionThatComesDuringAWriteIsWrittenNext) {
 
 TEST_F(FindingStoreTest, FindingsThatChangeAllTheTimeDelayNoOther) {
   make();
-  for (std::uint64_t id = 1; id <= 20; ++id) EXPECT_TRUE(finding_store->put(revised(id, 1)));
+  for (std::uint64_t id = 1; id <= 40; ++id) EXPECT_TRUE(finding_store->put(revised(id, 1)));
   EXPECT_TRUE(finding_store->put(some(100)));
   for (std::uint32_t revision = 2; revision < 12; ++revision) {
-    for (std::uint64_t id = 1; id <= 20; ++id) EXPECT_TRUE(finding_store->put(revised(id, revision)));
+    for (std::uint64_t id = 1; id <= 40; ++id) EXPECT_TRUE(finding_store->put(revised(id, revision)));
     run(4ms);
   }
   EXPECT_TRUE(finding_store->is_stored({"r1", 100}));

@@ -103,7 +103,9 @@ class FindingSourceTest : public testing::Test {
   /// Delivers at once, or where the link repeats and reorders later, and perhaps twice.
   void transmit(const std::function<void()>& deliver) {
     for (int copies = random.chance(repeats) ? 2 : 1; copies > 0; --copies)
-      if (random.chance(delays))
+      if (latency > Duration{})
+        air.emplace(strand->now() + latency, deliver);
+      else if (random.chance(delays))
         air.emplace(strand->now() + random.below(60) * 100ms, deliver);
       else
         deliver();
@@ -154,6 +156,7 @@ class FindingSourceTest : public testing::Test {
   FindingParams params{.robot = "r1", .max_findings = 8};
   wire::SenderState link{};
   double loss{}, repeats{}, delays{};
+  Duration latency{};
   std::multimap<Time, std::function<void()>> air{};
   Random random{3};
   std::array<Operator, 2> ops{};
