@@ -40,7 +40,8 @@ struct Row {
   std::vector<double> rise{}, run{}, width{}, ms{};
 };
 
-/// Whether a flight is part of the true one. Steps that are out of view are an error of the count, not another flight.
+/// Whether a flight is part of the true one. Steps that are out of view are an error of the count, not
+/// another flight.
 bool same(const Staircase& found, const Staircase& truth) {
   const Eigen::Vector3d off = found.foot - truth.foot;
   const Eigen::Vector2d ahead = truth.direction();
@@ -121,8 +122,8 @@ int main(int argc, char** argv) {
       const std::size_t cases = name == "false" ? 3 * options.cases : options.cases;
       for (std::size_t n = 0; n < cases; ++n) run_case(name, options.first + n, noise, options, row);
       fmt::print("{:<7} {:.2f}   {:>3}/{:<4} {:>5}  {:>5}  {:>7.1f} {:>7.1f} {:>9.0f} {:>10.2f} {:>6.2f}\n",
-                 name, noise, row.found, row.cases, row.whole, row.wrong, 1e3 * median(row.rise), 1e3 * median(row.run),
-                 1e3 * median(row.width), median(row.ms),
+                 name, noise, row.found, row.cases, row.whole, row.wrong, 1e3 * median(row.rise),
+                 1e3 * median(row.run), 1e3 * median(row.width), median(row.ms),
                  *std::max_element(row.ms.begin(), row.ms.end()));
       std::fflush(stdout);
     }

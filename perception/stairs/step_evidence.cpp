@@ -83,7 +83,8 @@ bool StepEvidence::find_chain(FlightEvidence& out) const {
       return faces[static_cast<std::size_t>(step + kMiddle)];
     };
     const auto clearly = [&](int riser) { return riser_seen(riser) == Seen::clearly; };
-    while (first < end && !seen(face(treads_, first - 1)) && !(clearly(first) && !model_.sees_tread(first - 1)))
+    while (first < end && !seen(face(treads_, first - 1)) &&
+           !(clearly(first) && !model_.sees_tread(first - 1)))
       ++first;
     while (end > first && !seen(face(treads_, end)) && !(clearly(end) && !model_.sees_well(end))) --end;
     found = 0;
@@ -177,7 +178,7 @@ void StepEvidence::compare(FlightEvidence& out, double tolerance) {
         shh += double{p.h} * p.h;
     squares += double{p.off} * p.off;
     Face& face = (p.riser ? risers_ : treads_)[static_cast<std::size_t>(p.step + kMiddle)];
-    face.count += 1, face.sum += p.off, face.squares += double{p.off} * p.off;
+    face.count += 1, face.sum += p.off;
     face.strips.set(static_cast<std::size_t>(std::clamp((p.v - out.right) / kStrip, 0.0, kStrips - 1.0)));
   }
   if (n < 10) return;
@@ -186,14 +187,17 @@ void StepEvidence::compare(FlightEvidence& out, double tolerance) {
   const double mean = (cuu + chh) / 2, spread = std::hypot((cuu - chh) / 2, cuh);
   out.plane_spread = std::sqrt(std::max(0.0, mean - spread) / n);
   out.spread = std::sqrt(squares / n);
-  double loose = 0;
-  for (const auto* faces : {&risers_, &treads_})
-    for (const Face& face : *faces)
-      if (face.count > 0) {
-        loose += face.squares - face.sum * face.sum / face.count;
-        out.independent += std::min(face.count, 2.0 * static_cast<double>(face.strips.count()));
-      }
-  out.loose_spread = std::sqrt(std::max(0.0, loose) / n);
+  for (const auto* faces : {&risers_, &treads_}) {
+    double weight = 0, offsets = 0;
+    for (const Face& face : *faces) {
+      if (face.count == 0) continue;
+      const double measured = std::min(face.count, 2.0 * static_cast<double>(face.strips.count()));
+      weight += measured;
+      offsets += measured * std::pow(face.sum / face.count, 2);
+    }
+    out.independent += weight;
+    if (weight > 0) out.unequal = std::max(out.unequal, std::sqrt(offsets / weight));
+  }
   out.clean = on / (on + beside);
 }
 

@@ -18,7 +18,7 @@ struct FlightEvidence {
   int free_faces{};        ///< Those whose places equal steps determine.
   double spread{};         ///< Root mean square of the points' distances from the steps, m.
   double plane_spread{};   ///< The same from one plane, as of a ramp.
-  double loose_spread{};   ///< From steps each of which has a place and height of its own, as of boxes.
+  double unequal{};        ///< Root mean square of the offsets of risers, or of treads, from equal steps, m.
   double independent{};    ///< Number of independent measurements.
   double clean{};          ///< Share of the points beside the steps that lie on them.
 };
@@ -38,7 +38,7 @@ class StepEvidence {
   using Strips = std::bitset<kStrips>;
   struct Face {
     Strips strips{};
-    double count{}, sum{}, squares{};
+    double count{}, sum{};
   };
   /// A point on the steps' side of the model.
   struct Placed {
