@@ -99,8 +99,9 @@ UnitParams Agent::Impl::map_unit() {
 UnitParams Agent::Impl::stairs_unit() {
   return {
       .name = "stairs", .dedicated = true, .make = [this](Executor& strand) -> std::unique_ptr<Component> {
-        return std::make_unique<StairsPart>(StairsParams{.eye = params.platform.lidar_origin()}, strand,
-                                            Log(params.log, params.name), context->stairs_search);
+        return std::make_unique<StairsPart>(
+            StairsParams{.instance = ++context->stairs_searches, .eye = params.platform.lidar_origin()},
+            strand, Log(params.log, params.name), context->stairs_search);
       }};
 }
 

@@ -73,6 +73,7 @@ struct Agent::Context {
   std::unique_ptr<ContentSender> content{};  ///< Of the findings and the maps.
   MapService map_insertion{"map insertion", 2};
   StairsService stairs_search{"stairs", 2};
+  std::uint32_t stairs_searches{};  ///< Instances of the search so far; by the stairs component only.
   std::unique_ptr<StairsReporter> stairs{};  ///< Null: this robot seeks no staircases.
   AgentSupervisor* watch{};                  ///< From any thread.
   CommandComponent* command_component{};     ///< Null while the command component is not running.

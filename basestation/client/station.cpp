@@ -76,6 +76,7 @@ StationOptions Station::options() const {
 void Station::on_change(std::function<void()> poke) {
   std::unique_lock guard(mutex_);
   poke_ = std::move(poke);
+  poked_ = false;
   poked_through_.wait(guard, [this] { return pokes_running_ == 0; });
 }
 

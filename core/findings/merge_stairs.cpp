@@ -105,9 +105,10 @@ Staircase combined(std::span<const SeenStairs> seen) {
   }
   Staircase out;
   out.heading = std::remainder(reference.heading + heading.value(), 2 * M_PI);
-  out.rise = rise.value();
-  out.run = run.value();
-  out.width = width.value();
+  // A mean of values at a bound may round beyond it.
+  out.rise = std::clamp(rise.value(), Staircase::kLeastRise, Staircase::kMostRise);
+  out.run = std::clamp(run.value(), Staircase::kLeastRun, Staircase::kMostRun);
+  out.width = std::clamp(width.value(), Staircase::kLeastWidth, Staircase::kMostWidth);
   const Eigen::Vector2d ahead = out.run * out.direction();
   const Eigen::Vector3d step(ahead.x(), ahead.y(), out.rise);
   std::vector<int> firsts;

@@ -87,6 +87,7 @@ StepFit StepFitter::refine(std::span<const SlopePoint> points, StepModel m) {
   StepFit fit;
   Edges risers(2 * kSlots), treads(2 * kSlots);
   for (int round = 0; round <= kRounds; ++round) {
+    if (!(m.run > 0.5 * Staircase::kLeastRun && m.rise > 0.5 * Staircase::kLeastRise)) return {};
     Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     Eigen::Matrix2d c = Eigen::Matrix2d::Zero();
@@ -137,7 +138,6 @@ StepFit StepFitter::refine(std::span<const SlopePoint> points, StepModel m) {
     const Eigen::Vector2d dh = fit.rise_covariance * d;
     m.edge_u += du[0], m.run += du[1], m.turn += du[2];
     m.edge_h += dh[0], m.rise += dh[1];
-    if (!(m.run > 0.5 * Staircase::kLeastRun && m.rise > 0.5 * Staircase::kLeastRise)) return {};
   }
   return fit;
 }
@@ -148,7 +148,7 @@ void StepFitter::fill(std::span<const SlopePoint> points, double slope) {
   for (const SlopePoint& p : points) {
     const double t = p.x() * c + p.z() * s, e = p.z() * c - p.x() * s;
     if (std::abs(e) > kNearPlane || std::abs(t) >= kReach) continue;
-    Bin& bin = bins_[static_cast<std::size_t>((t + kReach) / kBinLength)];
+    Bin& bin = bins_[std::min(bins_.size() - 1, static_cast<std::size_t>((t + kReach) / kBinLength))];
     bin.sum += e;
     bin.weight += 1.0;
   }

@@ -23,8 +23,8 @@ class SurfaceCells {
  public:
   static constexpr int kSide = 120;  ///< Columns along an edge.
   static constexpr float kEdge = 0.1f;
-  static constexpr float kReach = kSide * kEdge / 2;  ///< m, in x and y.
-  static constexpr float kHeight = 3.2f;              ///< m, upwards and downwards.
+  static constexpr float kReach = kSide * kEdge / 2;  ///< In x and y, m.
+  static constexpr float kHeight = 3.2f;              ///< Upwards and downwards, m.
 
   static constexpr int kMostInColumn = 40;  ///< Points of a column that are used: the last ones.
 

@@ -24,7 +24,8 @@ StairsPart::StairsPart(StairsParams params, Executor& strand, Log log, StairsSer
     : Component("stairs", strand, std::move(log), {.beat = 100ms}),
       params_(params),
       service_(service),
-      detector_(std::make_shared<perception::StairsDetector>()) {}
+      detector_(std::make_shared<perception::StairsDetector>()),
+      tracker_(params.instance) {}
 
 Result<void> StairsPart::on_start() {
   offer(service_, [this](const auto& job, const auto& reply) { take(job, reply); });
@@ -32,6 +33,7 @@ Result<void> StairsPart::on_start() {
 }
 
 bool StairsPart::is_due(const StairsJob& job) const {
+  if (searching_) return false;
   if (!sought_) return true;
   return job.made - *sought_ >= params_.period &&
          (job.scan->located.position - sought_from_).norm() >= params_.least_way;
@@ -43,12 +45,14 @@ void StairsPart::take(const std::shared_ptr<const StairsJob>& job, const Reply<S
       (scans_.back()->odom_epoch != job->odom_epoch || scans_.back()->scan->jumps != job->scan->jumps)) {
     scans_.clear();
     tracker_.clear();
+    sought_.reset();
   }
   scans_.push_back(job);
   while (scans_.size() > params_.most_scans || job->made - scans_.front()->made > params_.window)
     scans_.pop_front();
   if (!is_due(*job)) return reply(StairsStep{{}, job->odom_epoch});
   sought_ = job->made;
+  searching_ = true;
   sought_from_ = job->scan->located.position;
   const Eigen::Vector3f eye = (job->scan->located * params_.eye).cast<float>();
   compute(
@@ -56,9 +60,15 @@ void StairsPart::take(const std::shared_ptr<const StairsJob>& job, const Reply<S
       [scans = std::vector(scans_.begin(), scans_.end()), detector = detector_, eye] {
         return detector->detect(accumulated(scans), eye);
       },
-      [this, reply, epoch = job->odom_epoch, from = sought_from_](Result<std::vector<Staircase>> seen) {
+      [this, reply, job](Result<std::vector<Staircase>> seen) {
+        searching_ = false;
         if (!seen) return reply(seen.error());
-        reply(StairsStep{tracker_.take(*seen, from), epoch});
+        const StairsJob& newest = *scans_.back();
+        // The frame may have begun again, or jumped, meanwhile.
+        if (newest.odom_epoch != job->odom_epoch || newest.scan->jumps != job->scan->jumps)
+          return reply(StairsStep{{}, newest.odom_epoch});
+        tracker_.take(*seen, job->scan->located.position);
+        reply(StairsStep{tracker_.confirmed(), job->odom_epoch});
       });
 }
 

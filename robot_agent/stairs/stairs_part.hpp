@@ -2,6 +2,8 @@
 #pragma once
 #include <deque>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/component/call.hpp"
@@ -25,14 +27,15 @@ struct StairsJob {
   Time made{};
 };
 
-/// Confirmed staircases that are new or changed, in the odometry frame.
+/// All confirmed staircases after a search, in the odometry frame; none between searches.
 struct StairsStep {
-  std::vector<Staircase> stairs{};
+  std::vector<StairsTracker::Tracked> stairs{};
   std::uint32_t odom_epoch{};
 };
 using StairsService = Service<std::shared_ptr<const StairsJob>, StairsStep>;
 
 struct StairsParams {
+  std::uint32_t instance{};      ///< Of the component since the start of the agent.
   Eigen::Vector3d eye{0, 0, 0};  ///< Of the lidar, base_link, m.
   Duration window{1500ms};       ///< Scans are accumulated for so long.
   std::size_t most_scans{8};     ///< In the window.
@@ -57,8 +60,9 @@ class StairsPart : public Component {
   StairsService& service_;
   std::deque<std::shared_ptr<const StairsJob>> scans_{};
   std::shared_ptr<perception::StairsDetector> detector_{};
-  StairsTracker tracker_{};
+  StairsTracker tracker_;
   std::optional<Time> sought_{};
+  bool searching_{false};  ///< One search at a time uses the detector.
   Eigen::Vector3d sought_from_{0, 0, 0};
 };
 

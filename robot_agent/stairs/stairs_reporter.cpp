@@ -6,6 +6,7 @@
 
 #include "core/findings/merge_stairs.hpp"
 #include "core/findings/stairs_data.hpp"
+#include "robot_agent/stairs/stairs_tracker.hpp"
 
 namespace adit::agent {
 namespace {
@@ -28,21 +29,43 @@ std::string stairs_text(const Staircase& stairs) {
   return text.data();
 }
 
-Result<void> StairsReporter::take(const Staircase& stairs, std::uint64_t stamp) {
+std::optional<findings::Key> StairsReporter::known(const Staircase& stairs) const {
   for (const auto& [key, finding] : findings_.finding_store().all()) {
     if (key.robot != robot_ || finding.kind != findings::kStairs) continue;
-    const auto known = findings::stairs_of(finding);
-    if (!known || !findings::is_same_flight(*known, stairs)) continue;
-    // After a restart, fewer steps may be in view than were seen before.
-    const std::array<findings::SeenStairs, 2> both{{{key, *known}, {key, stairs}}};
-    findings::Finding better =
-        finding_of(stairs.steps >= known->steps ? stairs : findings::combined(both), stamp);
-    better.key = key;
-    return findings_.update(std::move(better));
+    const auto stored = findings::stairs_of(finding);
+    if (stored && findings::is_same_flight(*stored, stairs)) return key;
   }
-  const auto reported = findings_.report(finding_of(stairs, stamp));
-  if (!reported) return reported.error();
-  return {};
+  return std::nullopt;
+}
+
+Result<void> StairsReporter::take(std::uint64_t id, const Staircase& stairs, std::uint64_t stamp) {
+  const auto& all = findings_.finding_store().all();
+  auto named = keys_.find(id);
+  const bool tracked = named != keys_.end() && all.contains(named->second);
+  if (!tracked) {
+    if (const auto key = known(stairs)) {
+      if (keys_.size() >= kMostKeys) keys_.erase(keys_.begin());
+      named = keys_.insert_or_assign(id, *key).first;
+    } else {
+      const auto reported = findings_.report(finding_of(stairs, stamp));
+      if (!reported) return reported.error();
+      if (keys_.size() >= kMostKeys) keys_.erase(keys_.begin());
+      keys_.insert_or_assign(id, findings::Key{robot_, *reported});
+      return {};
+    }
+  }
+  const findings::Key key = named->second;
+  const auto stored = findings::stairs_of(all.at(key));
+  Staircase better = stairs;
+  if (stored && stored->steps > stairs.steps) {
+    // After a restart, fewer steps are in view than were seen before.
+    const std::array<findings::SeenStairs, 2> both{{{key, *stored}, {key, stairs}}};
+    better = with_least_sigma(findings::combined(both));
+  }
+  if (stored && !differs(*stored, better)) return {};
+  findings::Finding changed = finding_of(better, stamp);
+  changed.key = key;
+  return findings_.update(std::move(changed));
 }
 
 }  // namespace adit::agent

@@ -1,27 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
 #include "core/geometry/staircase.hpp"
 #include "core/time/time.hpp"
 #include "robot_agent/findings/finding_source.hpp"
 
 namespace adit::agent {
 
-/// Makes findings of staircases. One that is known already, also from before a restart, is not reported once
-/// more.
+/// Keeps findings of the robot's staircases as its searches know them. One that is known already, also from
+/// before a restart, is not reported once more; a corrected map moves them.
 class StairsReporter {
  public:
   static constexpr std::uint8_t kImportance = 5;
+  static constexpr std::size_t kMostKeys = 1024;
 
   StairsReporter(std::string robot, FindingSource& findings)
       : robot_(std::move(robot)), findings_(findings) {}
+  /// @param id      StairsTracker::Tracked::id.
   /// @param stairs  Map frame.
   /// @param stamp   The robot's clock, ns.
   /// Errors: as of FindingSource::report().
-  Result<void> take(const Staircase& stairs, std::uint64_t stamp);
+  Result<void> take(std::uint64_t id, const Staircase& stairs, std::uint64_t stamp);
 
  private:
+  /// The finding of the same flight.
+  std::optional<findings::Key> known(const Staircase& stairs) const;
+
   std::string robot_;
   FindingSource& findings_;
+  std::map<std::uint64_t, findings::Key> keys_{};  ///< By id; at most kMostKeys.
 };
 
 /// For operators, for example "6 steps of 0.20 m, 1.2 m up".

@@ -93,9 +93,9 @@ int stairs(const StairsOptions& options) {
       window.erase(window.begin(), window.begin() + static_cast<std::ptrdiff_t>(sizes.front()));
       sizes.erase(sizes.begin());
     }
-    (void)tracker.take(stairs_in(detector, window, T * eye), pose.position);
+    tracker.take(stairs_in(detector, window, T * eye), pose.position);
   }
-  for (const Staircase& s : tracker.confirmed()) print(s, options.json, "");
+  for (const auto& [id, s] : tracker.confirmed()) print(s, options.json, "");
   return 0;
 }
 

@@ -288,7 +288,7 @@ std::vector<std::string> random_fault_kinds(const Scenario& scenario) {
 }
 
 const std::vector<std::string>& component_names() {
-  static const std::vector<std::string> names{"command", "planner", "router", "sensors", "map"};
+  static const std::vector<std::string> names{"command", "planner", "router", "sensors", "map", "stairs"};
   return names;
 }
 

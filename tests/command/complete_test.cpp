@@ -29,7 +29,8 @@ TEST(Complete, CommandsThenRobotsThenArguments) {
       << "the only mode that all may enter";
   EXPECT_THAT(complete({"yield", "all", ""}, kRobots), ElementsAre("off"));
   EXPECT_THAT(complete({"release", ""}, kRobots), ElementsAre("r1", "r2"));
-  EXPECT_THAT(complete({"policy", "r1", ""}, kRobots), ElementsAre("planner", "router", "sensors", "map"));
+  EXPECT_THAT(complete({"policy", "r1", ""}, kRobots),
+              ElementsAre("planner", "router", "sensors", "map", "stairs"));
   EXPECT_THAT(complete({"policy", "r1", "planner", ""}, kRobots), ElementsAre("auto", "manual"));
   EXPECT_THAT(complete({"help", ""}, kRobots), Contains("goto"));
   EXPECT_THAT(complete({"completion", ""}, kRobots), ElementsAre("bash", "zsh", "fish"));

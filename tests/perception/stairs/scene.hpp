@@ -19,7 +19,7 @@ namespace adit::perception::scenes {
 /// A spinning lidar without times.
 struct Lidar {
   int rings{32}, columns{900};
-  double lowest{-45.0}, highest{15.0};  ///< degrees; these are the platform `legged`'s.
+  double lowest{-45.0}, highest{15.0};  ///< Degrees; these are the platform `legged`'s.
   double height{0.65};                  ///< m
   double min_range{0.4}, max_range{30.0};
   double noise{0.02};  ///< Standard deviation of a range, m.
@@ -28,7 +28,7 @@ struct Lidar {
 /// A solid: a box turned about its own y axis (a ramp) and then about z.
 struct Solid {
   Eigen::Vector3d centre{}, half{};  ///< m
-  double yaw{}, pitch{};             ///< rad; pitch > 0 lowers its +x end.
+  double yaw{}, pitch{};             ///< Radians; pitch > 0 lowers its +x end.
 };
 
 /// A world and the way of a robot in it, in the world's frame.
