@@ -16,8 +16,9 @@ constexpr float kSlice = 0.1f;           // Along a region, m.
 constexpr std::size_t kPeriods = 3;      // That are tried: a half or a double one may be stronger.
 constexpr std::size_t kMostInSlice = 60;
 constexpr std::size_t kMostForDirection = 5000;  // Points for the fit.
-constexpr double kUnequal = 0.015;  // Root mean square of the faces' offsets from equal steps, m.
-constexpr double kBetter = 1.25;    // Than a plane, in spread: many points make any difference certain.
+constexpr double kUnequal = 0.015;     // Root mean square of the faces' offsets from equal steps, m.
+constexpr double kBetter = 1.25;       // Than a plane, in spread: many points make any difference certain.
+constexpr double kMostSpread = 0.035;  // Spread, m: range noise of 3 cm and what builders allow themselves.
 constexpr double kLeastClean = 0.6;
 
 }  // namespace
@@ -112,7 +113,8 @@ std::optional<Staircase> StairsDetector::judge(const SlopeRegion& region,
     const double n = seen->independent, s = std::hypot(seen->spread, floor);
     const double better = std::hypot(seen->plane_spread, floor) / s;
     const double against_plane = 2 * n * std::log(better) - 2 * std::log(n);
-    if (!(against_plane > 10.0) || better < kBetter || seen->unequal > kUnequal) continue;
+    if (!(against_plane > 10.0) || better < kBetter || seen->spread > kMostSpread || seen->unequal > kUnequal)
+      continue;
     if (best && fit.cost() >= least_cost) continue;
     least_cost = fit.cost();
     Staircase stairs;
