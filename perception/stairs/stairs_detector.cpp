@@ -16,9 +16,10 @@ constexpr float kSlice = 0.1f;           // Along a region, m.
 constexpr std::size_t kPeriods = 3;      // That are tried: a half or a double one may be stronger.
 constexpr std::size_t kMostInSlice = 60;
 constexpr std::size_t kMostForDirection = 5000;  // Points for the fit.
-constexpr double kUnequal = 0.015;     // Root mean square of the faces' offsets from equal steps, m.
-constexpr double kBetter = 1.25;       // Than a plane, in spread: many points make any difference certain.
-constexpr double kMostSpread = 0.035;  // Spread, m: range noise of 3 cm and what builders allow themselves.
+constexpr double kUnequal = 0.015;  // Root mean square of the faces' offsets from equal steps, m.
+constexpr double kBetter = 1.25;    // Than a plane, in spread: many points make any difference certain.
+constexpr double kMostSpread =
+    0.04;  // Spread, m: range noise of 3 cm, and the odometry's errors while the points were accumulated.
 constexpr double kLeastClean = 0.6;
 
 }  // namespace

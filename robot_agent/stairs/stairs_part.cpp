@@ -7,6 +7,12 @@
 
 namespace adit::agent {
 
+namespace {
+
+constexpr float kFar = 8.0f;  // Points are used within 6 m of the newest scan's place, m.
+
+}  // namespace
+
 std::vector<Eigen::Vector3f> accumulated(std::span<const std::shared_ptr<const StairsJob>> scans) {
   std::vector<Eigen::Vector3f> points;
   for (const auto& job : scans) {
@@ -15,7 +21,8 @@ std::vector<Eigen::Vector3f> accumulated(std::span<const std::shared_ptr<const S
         (Eigen::Translation3d(scan->located.position) * scan->located.orientation).cast<float>();
     const std::vector<std::uint8_t> passing = scan->passing();
     for (std::size_t n = 0; n < scan->points.size(); ++n)
-      if (n >= passing.size() || passing[n] == 0) points.push_back(T_odom_base * scan->points[n]);
+      if ((n >= passing.size() || passing[n] == 0) && scan->points[n].squaredNorm() < kFar * kFar)
+        points.push_back(T_odom_base * scan->points[n]);
   }
   return points;
 }

@@ -39,7 +39,7 @@ struct StairsParams {
   Eigen::Vector3d eye{0, 0, 0};  ///< Of the lidar, base_link, m.
   Duration window{1500ms};       ///< Scans are accumulated for so long.
   std::size_t most_scans{8};     ///< In the window.
-  Duration period{1s};           ///< Between two searches, while the robot moves.
+  Duration period{600ms};        ///< Between two searches, while the robot moves.
   double least_way{0.15};        ///< Since the last search, m: from the same place it sees the same.
   Duration modelled{6ms};        ///< Duration of a search in rehearsal.
 };
