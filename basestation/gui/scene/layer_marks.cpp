@@ -96,9 +96,9 @@ MarkList layer_marks(const LayerScene& scene) {
   std::size_t ribbons = 0;
   if (scene.stairs)
     for (const station::StairsItem& item : scene.stairs->stairs) {
-      if (item.verdict == station::Verdict::rejected || ++ribbons > kMaxRibbons) continue;
       in_ribbons.insert(item.findings.begin(), item.findings.end());
-      add_stairs(scene, item, out);
+      if (item.verdict != station::Verdict::rejected && ++ribbons <= kMaxRibbons)
+        add_stairs(scene, item, out);
     }
   std::size_t stars = 0;
   if (scene.found)
