@@ -9,17 +9,16 @@
 namespace adit::perception {
 namespace {
 
-constexpr float kBeyond = 1.8f;          // A region's neighbourhood along it, m.
-constexpr float kBesidePlane = 0.9f;     // Of the points that are looked at, m.
-constexpr double kLeastPeriodic = 0.45;  // Of the squares about a plane; steps have 0.6 and more.
-constexpr float kSlice = 0.1f;           // Along a region, m.
-constexpr std::size_t kPeriods = 3;      // That are tried: a half or a double one may be stronger.
-constexpr std::size_t kMostInSlice = 60;
-constexpr std::size_t kMostForDirection = 5000;  // Points for the fit.
-constexpr double kUnequal = 0.015;  // Root mean square of the faces' offsets from equal steps, m.
-constexpr double kBetter = 1.25;    // Than a plane, in spread: many points make any difference certain.
-constexpr double kMostSpread =
-    0.04;  // Spread, m: range noise of 3 cm, and the odometry's errors while the points were accumulated.
+constexpr float kBeyond = 1.8f;                  // A region's neighbourhood along it, m.
+constexpr float kBesidePlane = 0.9f;             // Of the points that are looked at, m.
+constexpr double kLeastPeriodic = 0.45;          // Of the squares about a plane; steps have 0.6 and more.
+constexpr float kSlice = 0.1f;                   // Along a region, m.
+constexpr std::size_t kPeriods = 3;              // That are tried: a half or a double one may be stronger.
+constexpr std::size_t kMostInSlice = 60;         // Points for the fit.
+constexpr std::size_t kMostForDirection = 5000;  // Points for the search of the direction.
+constexpr double kUnequal = 0.015;    // Root mean square of the faces' offsets from equal steps, m.
+constexpr double kBetter = 1.25;      // Than a plane, in spread: many points make any difference certain.
+constexpr double kMostSpread = 0.04;  // m: range noise of 3 cm, and the odometry's errors meanwhile.
 constexpr double kLeastClean = 0.6;
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace adit::perception {
 /// Point Clouds with Multi-detection Merging for Heterogeneous Robots", 2025), it averages before it looks:
 /// regions that rise steadily, in them the period of the distances from their plane, then all points'
 /// distances from equal steps. A flight is accepted where equal steps explain the points better than a plane
-/// and than steps of any size (Bayesian information criterion).
+/// (Bayesian information criterion), and where the faces differ little from them.
 class StairsDetector {
  public:
   /// @param points   In a level frame, z up, m; the oldest first.

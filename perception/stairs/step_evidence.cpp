@@ -70,24 +70,18 @@ bool StepEvidence::find_chain(FlightEvidence& out) const {
   int best = 0;
   for (int k = 1 - kMiddle; k < kMiddle - 1; ++k) {
     if (riser_seen(k) == Seen::no) continue;
-    int last = k, found = 0;
+    int last = k;
     // One riser may be hidden, as by a person.
-    for (int n = k; n < kMiddle - 1 && n - last <= 2; ++n) {
-      const Seen here = riser_seen(n);
-      if (here != Seen::no) last = n;
-      if (here == Seen::clearly) ++found;
-    }
+    for (int n = k; n < kMiddle - 1 && n - last <= 2; ++n)
+      if (riser_seen(n) != Seen::no) last = n;
     // At its ends, the floor, or a tread, must be in view; above the eye, a riser is enough.
     int first = k, end = last;
-    const auto face = [](const std::array<Face, kSteps>& faces, int step) -> const Face& {
-      return faces[static_cast<std::size_t>(step + kMiddle)];
-    };
+    const auto tread_seen = [&](int step) { return seen(treads_[static_cast<std::size_t>(step + kMiddle)]); };
     const auto clearly = [&](int riser) { return riser_seen(riser) == Seen::clearly; };
-    while (first < end && !seen(face(treads_, first - 1)) &&
-           !(clearly(first) && !model_.sees_tread(first - 1)))
+    while (first < end && !tread_seen(first - 1) && !(clearly(first) && !model_.sees_tread(first - 1)))
       ++first;
-    while (end > first && !seen(face(treads_, end)) && !(clearly(end) && !model_.sees_well(end))) --end;
-    found = 0;
+    while (end > first && !tread_seen(end) && !(clearly(end) && !model_.sees_well(end))) --end;
+    int found = 0;
     for (int n = first; n <= end; ++n) found += clearly(n) ? 1 : 0;
     if (found > best) {
       best = found;
@@ -96,15 +90,6 @@ bool StepEvidence::find_chain(FlightEvidence& out) const {
     }
     k = last;
   }
-  out.faces = 0;
-  int risers = 0, treads = 0;
-  for (int k = out.first; k <= out.last && best > 0; ++k) {
-    const auto slot = static_cast<std::size_t>(k + kMiddle);
-    risers += seen(risers_[slot]) ? 1 : 0;
-    treads += seen(treads_[slot]) ? 1 : 0;
-  }
-  out.faces = risers + treads;
-  out.free_faces = std::max(0, risers - 2) + std::max(0, treads - 2);
   return best >= Staircase::kLeastSteps;
 }
 

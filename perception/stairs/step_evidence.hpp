@@ -14,8 +14,6 @@ namespace adit::perception {
 struct FlightEvidence {
   int first{}, last{};     ///< Risers.
   double right{}, left{};  ///< Ends of the treads across, m.
-  int faces{};             ///< Risers, and treads, that were seen themselves.
-  int free_faces{};        ///< Those whose places equal steps determine.
   double spread{};         ///< Root mean square of the points' distances from the steps, m.
   double plane_spread{};   ///< The same from one plane, as of a ramp.
   double unequal{};        ///< Root mean square of the offsets of risers, or of treads, from equal steps, m.
