@@ -102,6 +102,8 @@ constexpr std::array kRows{
     AlertRow{"arrived", log},
     AlertRow{"mode_refused", log},  // The operator's own command: its outcome says it.
     AlertRow{"reset", log},
+    AlertRow{"finding_withdrawn", log},
+    AlertRow{"finding_changed", log},
     AlertRow{"localisation_ok", log},
     AlertRow{"map_stored", log},
     AlertRow{"store_works", log},

@@ -85,7 +85,8 @@ Commands::Commands(const StationParams& params, Executor& strand, wire::Particip
       sender_({.name = params.name, .id = params.id, .discovery_grace = params.discovery_grace}, strand,
               radio, fleet),
       stick_(params.id, strand, radio, fleet),
-      maps_(params, strand, fleet, content) {
+      maps_(params, strand, fleet, content),
+      findings_(params, strand, fleet, content) {
   sender_.on_late = [this](const Answer& answer) { late_stop(answer); };
 }
 
@@ -190,7 +191,7 @@ void Commands::run(std::uint64_t handle, const Request& request, Done done) {
   if (!presence_.up())
     return refuse(request, Reason::no_station, std::string(describe(Reason::no_station)), done);
   if (request.verb == verb("down")) return down(request, done);
-  if (request.info->first_word() == "finding") return judge_finding(request, content_, done);
+  if (request.info->first_word() == "finding") return findings_.run(request, done);
   if (request.verb == verb("stop") && request.all) return stop_all(request, done);
   if (request.verb == verb("convoy start")) return start_convoy(handle, request, std::move(done));
   if (request.verb == verb("convoy stop")) return stop_convoy(handle, request, done);
@@ -200,7 +201,10 @@ void Commands::run(std::uint64_t handle, const Request& request, Done done) {
 void Commands::answer_query(const Request& request, const Done& done) {
   if (request.info->first_word() == "map") return maps_.run(request, done);
   const Time now = strand_.now();
-  done(query_outcome(request, {params_, fleet_, sender_.counts(), content_, now - started_, now}));
+  const Outcome outcome =
+      query_outcome(request, {params_, fleet_, sender_.counts(), content_, now - started_, now});
+  if (request.has("--export") && outcome.exit_code == kExitDone) return findings_.write_file(request, done);
+  done(outcome);
 }
 
 Gather::Done Commands::reported_to(Done done) const {

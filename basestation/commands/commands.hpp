@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "basestation/commands/finding_commands.hpp"
 #include "basestation/commands/gather.hpp"
 #include "basestation/commands/map_commands.hpp"
 #include "basestation/content/content.hpp"
@@ -98,6 +99,7 @@ class Commands {
   Sender sender_;
   Stick stick_;
   MapCommands maps_;
+  FindingCommands findings_;
   std::deque<Waiting> waiting_{};  ///< In the order in which they were given.
   Flows flows_{};
   /// Each a `stop all` of a station that was just started and has not heard all robots yet.

@@ -54,44 +54,14 @@ Outcome list_findings(const Request& request, const Fleet& fleet, Content& conte
         std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.first.robot == robot; });
     if (!found && !fleet.robot(robot)) return unknown_robot(request, fleet, robot);
   }
-  const FoundReport report = findings_report(content.desk(), content.book(), fleet, request.robots);
+  const FoundReport report =
+      findings_report(content.desk(), content.book(), content.marks(), fleet, request.robots);
   Outcome outcome =
       done_outcome(request, findings_text(report), findings_json(report, content.desk(), content.book()));
   const std::uint64_t refused = content.pieces().refused(transfer::Kind::findings);
   outcome.json["refused_pieces"] = refused;
   if (refused > 0) outcome.text += std::to_string(refused) + " pieces of findings refused\n";
   return outcome;
-}
-
-Outcome refused(const Request& request, const Error& error) {
-  return refused_outcome(request, error.reason, "finding: " + error.text, error.text);
-}
-
-Verdict verdict_of(const std::string& word) {
-  if (word == "confirm") return Verdict::confirmed;
-  return word == "reject" ? Verdict::rejected : Verdict::open;
-}
-
-std::string note_of(const Request& request) {
-  const command::ArgumentValue* text = request.find("TEXT");
-  std::string note;
-  if (text)
-    for (const std::string& word : text->words) note += (note.empty() ? "" : " ") + word;
-  return note;
-}
-
-Outcome judged(const Request& request, const findings::Key& key, const FindingBook::Judgement& entry) {
-  std::string text = "finding " + std::to_string(entry.number) + " of " + key.robot;
-  if (request.verb != verb("finding note"))
-    text += std::string(" is ") + to_string(entry.verdict);
-  else
-    text += entry.note.empty() ? " has no note" : " has the note: " + entry.note;
-  return done_outcome(request, text + "\n",
-                      {{"number", entry.number},
-                       {"robot", key.robot},
-                       {"id", findings::id_text(key.id)},
-                       {"verdict", to_string(entry.verdict)},
-                       {"note", entry.note}});
 }
 
 }  // namespace
@@ -130,22 +100,6 @@ Outcome query_outcome(const Request& request, const QuerySubject& subject) {
   }
   const std::vector<Action> rows = actions({selection.begin(), selection.end()});
   return done_outcome(request, actions_text(rows), {{"actions", actions_json(rows)}});
-}
-
-void judge_finding(const Request& request, Content& content,
-                   const std::function<void(const Outcome&)>& done) {
-  const double number = request.number("N");
-  const auto index = static_cast<std::uint32_t>(number);
-  const findings::Key* found = static_cast<double>(index) == number ? content.book().key_of(index) : nullptr;
-  if (!found || !content.desk().all().contains(*found))
-    return done(refused(request,
-                        {Reason::out_of_range, "there is no finding of that number; `findings` lists them"}));
-  const auto written = [&content, request, done, key = *found](const Result<void>& stored) {
-    done(stored ? judged(request, key, *content.book().find(key))
-                : refused(request, {stored.error().reason, "not stored: " + stored.error().text}));
-  };
-  if (request.verb == verb("finding note")) return content.book().note(*found, note_of(request), written);
-  content.book().judge(*found, verdict_of(request.word("VERDICT")), written);
 }
 
 }  // namespace adit::station

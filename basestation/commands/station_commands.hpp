@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <functional>
 #include <string>
 
 #include "basestation/commands/outcome.hpp"
@@ -22,9 +21,6 @@ struct QuerySubject {
 
 /// Answers `list`, `status`, `net`, `actions`, `health`, `findings` or `stairs`.
 Outcome query_outcome(const command::Request& request, const QuerySubject& subject);
-/// Runs `finding N ...`: stores what the operator decides about a finding, and then calls `done`.
-void judge_finding(const command::Request& request, Content& content,
-                   const std::function<void(const Outcome&)>& done);
 /// Why there is no robot of a name.
 std::string unknown_text(const Fleet& fleet);
 

@@ -15,7 +15,14 @@ namespace {
 
 constexpr Duration kCarrierHeard{std::chrono::seconds(30)};
 constexpr Duration kLookHolds{std::chrono::seconds(5)};  // Front ends say every second what they show.
-constexpr std::uint64_t kStartSalt = 1;                  // Beside the sequence of the phases.
+// Beside the sequence of the phases. Those of starts rise from kStartSalt.
+constexpr std::uint64_t kMarkSalt = 0, kSessionSalt = std::uint64_t{1} << 32, kStartSalt = 1;
+
+/// Kind and text of a finding for the log.
+std::string words_of(const findings::Finding& f) {
+  return command::clean(f.kind, findings::Finding::kKind) +
+         (f.text.empty() ? "" : ": " + command::clean(f.text, findings::Finding::kText));
+}
 
 }  // namespace
 
@@ -29,13 +36,23 @@ Content::Content(const StationParams& params, Executor& strand, wire::Participan
       book_(params.disk, strand),
       pieces_([&strand] { return strand.now(); },
               [this](const PieceReader::Piece& piece, PieceReader::Stored stored) {
-                if (piece.kind == static_cast<std::uint8_t>(transfer::Kind::findings))
-                  return desk_.hear(piece.robot, piece.data, std::move(stored));
+                const bool has_findings = piece.kind == static_cast<std::uint8_t>(transfer::Kind::findings);
+                if (from_station_ && has_findings)
+                  return desk_.hear_station(piece.robot, *from_station_, piece.data, std::move(stored));
+                if (from_station_) return Result<void>(Reason::malformed, "a station sends marks only");
+                if (has_findings) return desk_.hear(piece.robot, piece.data, std::move(stored));
                 return map_.take(piece.robot, piece.kind, piece.waiting, piece.data, std::move(stored));
               }),
       desk_({}, params.disk, strand, desk_outputs()),
+      marks_(params.name, params.id, Random(params.seed).fork(kMarkSalt).next(), desk_, strand),
       map_(drawn_start(), params.disk, strand,
-           [this](const std::string& text) { warn("map_not_stored", text); }) {}
+           [this](const std::string& text) { warn("map_not_stored", text); }),
+      mark_source_(params.name, desk_, marks_),
+      mark_sender_(
+          {.session = static_cast<std::uint32_t>(Random(params.seed).fork(kSessionSalt).next()) | 1U}) {
+  mark_sender_.add(mark_source_);
+  book_.on_change = [this] { findings_changed(); };
+}
 
 Content::~Content() = default;
 
@@ -61,14 +78,60 @@ Result<void> Content::open() {
 
 void Content::take(const radio::BulkPiece& sample, const wire::SampleInfo& info) {
   // Only the robot itself adds to its map and findings: Fleet::speaks_for would also take a participant that
-  // is not known yet.
-  const RobotView* robot = presence_.up() ? fleet_.robot(sample.robot()) : nullptr;
-  if (!robot || robot->participant != info.sender) return;
-  if (const auto piece = contract::decode(sample)) pieces_.take(*piece);
+  // is not known yet. The same holds for another station and its marks.
+  if (!presence_.up()) return;
+  const auto piece = contract::decode(sample);
+  if (!piece) return;
+  const RobotView* robot = fleet_.robot(piece->robot);
+  if (robot && robot->participant == info.sender) return pieces_.take(*piece);
+  const auto station = fleet_.stations().find(piece->robot);
+  if (station == fleet_.stations().end() || station->second.participant != info.sender) return;
+  from_station_ = station->second.id;
+  pieces_.take(*piece);
+  from_station_.reset();
+}
+
+void Content::take(const radio::BulkAck& sample, const wire::SampleInfo& info) {
+  const auto ack = contract::decode(sample);
+  if (!ack || ack->carrier || !presence_.up()) return;
+  const auto station = fleet_.stations().find(ack->station);
+  if (station == fleet_.stations().end() || station->second.participant != info.sender ||
+      station->second.id != ack->station_id)
+    return;
+  mark_sender_.acknowledged(ack->to(params_.name), strand_.now());
+}
+
+bool Content::open_marks() {
+  if (marks_out_ || marks_failed_) return !marks_failed_;
+  auto writer = wire::Writer<radio::BulkPiece>::make(radio_, wire::topics::kBulk);
+  auto reader = wire::make_reader(
+      radio_, wire::topics::kBulkAck, strand_,
+      [this](const radio::BulkAck& sample, const wire::SampleInfo& info) { take(sample, info); });
+  marks_failed_ = !writer || !reader;
+  if (marks_failed_) {
+    warn("finding_refused", "marks do not reach other stations: a topic could not be opened");
+    return false;
+  }
+  marks_out_ = std::make_unique<wire::Writer<radio::BulkPiece>>(std::move(*writer));
+  marks_acknowledged_ = std::move(*reader);
+  return true;
+}
+
+void Content::send_marks() {
+  if (!presence_.up() || !params_.content || fleet_.stations().empty()) return;
+  mark_source_.refresh();
+  if (mark_source_.empty() || !open_marks()) return;
+  for (transfer::Piece& piece : mark_sender_.due(strand_.now(), radio_.sender())) {
+    const contract::BulkPiece out{params_.name,  mark_sender_.session(),
+                                  piece.id,      static_cast<std::uint8_t>(piece.kind),
+                                  piece.waiting, std::move(piece.data)};
+    (void)marks_out_->write(encode(out));  // Best effort: core/transfer repairs what is lost.
+  }
 }
 
 void Content::acknowledge() {
-  if (!presence_.up() || !params_.content || fleet_.robots().empty()) return;
+  const bool alone = fleet_.robots().empty() && fleet_.stations().empty();
+  if (!presence_.up() || !params_.content || alone) return;
   const wire::LinkProfile* link = radio_.sender().link;
   const double bandwidth = link ? link->bandwidth : 0.0;
   const auto receipts = pieces_.due(bandwidth);
@@ -109,17 +172,50 @@ void Content::warn(const std::string& code, const std::string& text) {
              strand_.now());
 }
 
+FindingCounts Content::finding_counts() const {
+  if (counts_.changes == counted_) return counts_;
+  counted_ = counts_.changes;
+  counts_.listed = static_cast<std::uint32_t>(desk_.all().size());
+  counts_.open = 0;
+  for (const auto& [key, finding] : desk_.all()) {
+    const FindingBook::Judgement* entry = book_.find(key);
+    if (!finding.withdrawn && (!entry || entry->verdict == Verdict::open)) ++counts_.open;
+  }
+  return counts_;
+}
+
+void Content::findings_changed() {
+  ++counts_.changes;
+  if (on_findings) on_findings();
+}
+
+void Content::say_of(const findings::Finding& f, const char* code, const std::string& text) {
+  contract::Notification said{.code = code, .text = text};
+  if (!findings::marked_by(f)) said.robot = f.key.robot;
+  fleet_.say(std::move(said), strand_.now());
+}
+
+/// Robots refine what they found up to every two seconds: a new place or other data is no line in the log.
+void Content::revised(const findings::Finding& before, const findings::Finding& now) {
+  findings_changed();
+  const FindingBook::Judgement* entry = book_.find(now.key);
+  const std::string which = "finding " + std::to_string(entry ? entry->number : 0);
+  if (now.withdrawn && !before.withdrawn)
+    say_of(now, "finding_withdrawn", now.key.robot + " withdrew " + which + ", " + words_of(now));
+  else if (before.withdrawn && !now.withdrawn)
+    say_of(now, "found", now.key.robot + " found " + which + " again: " + words_of(now));
+  else if (!now.withdrawn && (before.kind != now.kind || before.text != now.text))
+    say_of(now, "finding_changed", which + " of " + now.key.robot + " is now " + words_of(now));
+}
+
 FindingDesk::Outputs Content::desk_outputs() {
   return {[this](const findings::Finding& f) {
             book_.add(f.key);
-            fleet_.say(
-                {.code = "found",
-                 .text = f.key.robot + " found " + command::clean(f.kind, findings::Finding::kKind) +
-                         (f.text.empty() ? "" : ": " + command::clean(f.text, findings::Finding::kText)),
-                 .robot = f.key.robot},
-                strand_.now());
+            const char* did = findings::marked_by(f) ? " marked " : " found ";
+            say_of(f, "found", f.key.robot + did + words_of(f));
           },
-          [this](const std::string& code, const std::string& text) { warn(code, text); }};
+          [this](const std::string& code, const std::string& text) { warn(code, text); },
+          [this](const findings::Finding& before, const findings::Finding& now) { revised(before, now); }};
 }
 
 }  // namespace adit::station

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,9 +9,13 @@
 #include "basestation/content/piece_reader.hpp"
 #include "basestation/findings/book.hpp"
 #include "basestation/findings/desk.hpp"
+#include "basestation/findings/mark_source.hpp"
+#include "basestation/findings/marks.hpp"
 #include "basestation/fleet/presence.hpp"
 #include "basestation/map/map_replica.hpp"
 #include "basestation/model/map_tiles.hpp"
+#include "basestation/model/world.hpp"
+#include "core/transfer/sender.hpp"
 
 namespace adit::wire {
 template <class T>
@@ -36,6 +41,8 @@ class Content {
   Result<void> open();
   /// Sends the receipts that are due.
   void acknowledge();
+  /// Sends other stations the marks that they lack.
+  void send_marks();
   /// Sends receipts soon, as a robot was heard for the first time.
   void greet() { pieces_.greet(); }
   /// Sets which place robots send first; holds for some seconds.
@@ -45,18 +52,28 @@ class Content {
 
   const FindingDesk& desk() const { return desk_; }
   FindingBook& book() { return book_; }
+  Marks& marks() { return marks_; }
   const PieceReader& pieces() const { return pieces_; }
+  FindingCounts finding_counts() const;
   const MapReceiver& maps() const { return map_.receiver(); }
   const ChunkStore& chunks() const { return map_.chunks(); }
 
   std::shared_ptr<const perception::VoxelImage> prior{};  ///< What the crew had before; null: nothing.
+  std::function<void()> on_findings{};  ///< Called when finding_counts() changed; may be empty.
 
  private:
   void take(const radio::BulkPiece& sample, const wire::SampleInfo& info);
+  /// Takes what another station has of this station's pieces.
+  void take(const radio::BulkAck& sample, const wire::SampleInfo& info);
+  /// Opens the ends of the topics on which marks go out; false after an error.
+  bool open_marks();
   /// Whether a robot is heard that carries maps of others.
   bool carrier_heard() const;
   void warn(const std::string& code, const std::string& text);
   FindingDesk::Outputs desk_outputs();
+  void findings_changed();
+  void revised(const findings::Finding& before, const findings::Finding& now);
+  void say_of(const findings::Finding& finding, const char* code, const std::string& text);
   std::uint32_t drawn_start();
 
   const StationParams& params_;
@@ -68,10 +85,19 @@ class Content {
   FindingBook book_;
   PieceReader pieces_;  ///< Of all kinds of content.
   FindingDesk desk_;
+  Marks marks_;
   MapReplica map_;
   DigestList digests_{};
   std::optional<LookedAt> look_{};  ///< What an operator looked at last.
   Time looked_{};
+  mutable FindingCounts counts_{.changes = 1};
+  mutable std::uint64_t counted_{};  ///< FindingCounts::changes when the others were counted.
+  MarkSource mark_source_;
+  transfer::Sender mark_sender_;
+  bool marks_failed_{};               ///< The ends for marks could not be opened.
+  std::optional<Id> from_station_{};  ///< The station whose piece is being taken; nothing: a robot's.
+  std::unique_ptr<wire::Writer<radio::BulkPiece>> marks_out_;
+  std::unique_ptr<wire::RawReader> marks_acknowledged_{};
   std::unique_ptr<wire::Writer<radio::BulkAck>> receipts_;
   std::unique_ptr<wire::RawReader> reader_{};
 };

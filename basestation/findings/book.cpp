@@ -118,6 +118,7 @@ void FindingBook::changed(Written written) {
   changed_ = true;
   if (written) waiting_.push_back(std::move(written));
   write();
+  if (on_change) on_change();
 }
 
 void FindingBook::write() {

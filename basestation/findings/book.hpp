@@ -41,6 +41,8 @@ class FindingBook {
   void judge(const findings::Key& key, Verdict verdict, Written written);
   void note(const findings::Key& key, const std::string& text, Written written);
 
+  std::function<void()> on_change{};  ///< Called after each change of an entry; may be empty.
+
  private:
   void write();
   void changed(Written written);

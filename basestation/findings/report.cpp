@@ -38,8 +38,8 @@ std::string verdict_text(const FoundItem& item) {
 
 }  // namespace
 
-FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Fleet& fleet,
-                            const std::vector<std::string>& robots) {
+FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Marks& marks,
+                            const Fleet& fleet, const std::vector<std::string>& robots) {
   FoundReport report;
   std::map<std::string, std::uint32_t> here;
   for (const Finding* f : chosen(desk, robots)) {
@@ -49,8 +49,12 @@ FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, co
                    .importance = f->importance,
                    .position = f->position,
                    .text = command::clean(f->text, Finding::kText),
-                   .withdrawn = f->withdrawn};
-    if (const double seconds_ago = age(*f, fleet); seconds_ago >= 0) item.age = seconds_ago;
+                   .withdrawn = f->withdrawn,
+                   .mark = findings::marked_by(*f).has_value()};
+    if (item.mark)
+      item.age = marks.age(*f);
+    else if (const double seconds_ago = age(*f, fleet); seconds_ago >= 0)
+      item.age = seconds_ago;
     if (const FindingBook::Judgement* entry = book.find(f->key)) {
       item.number = entry->number;
       item.verdict = entry->verdict;
@@ -72,8 +76,8 @@ std::string findings_text(const FoundReport& report) {
     std::vector<std::vector<std::string>> rows{
         {"N", "ROBOT", "KIND", "X", "Y", "Z", "AGE S", "VERDICT", "TEXT", "NOTE", "ID"}};
     for (const FoundItem& item : report.findings)
-      rows.push_back({std::to_string(item.number), item.robot, item.kind, fixed(item.position[0], 2),
-                      fixed(item.position[1], 2), fixed(item.position[2], 2),
+      rows.push_back({std::to_string(item.number), item.robot + (item.mark ? " (mark)" : ""), item.kind,
+                      fixed(item.position[0], 2), fixed(item.position[1], 2), fixed(item.position[2], 2),
                       item.age ? fixed(*item.age, 0) : "-", verdict_text(item), item.text, item.note,
                       item.id});
     out = table(rows);

@@ -84,9 +84,11 @@ void add_parts(const Named& before, double at_before, const Named& now, double a
 }  // namespace
 
 EncodedWorld encoded(const World& world) {
-  EncodedWorld out{
-      .at = world.at,
-      .head = {{"station", world.station}, {"link", world.link}, {"commands", json_of(world.commands)}}};
+  EncodedWorld out{.at = world.at,
+                   .head = {{"station", world.station},
+                            {"link", world.link},
+                            {"commands", json_of(world.commands)},
+                            {"findings", json_of(world.findings)}}};
   for (const Robot& robot : world.robots) out.robots[robot.name] = json_of(robot);
   for (const StationSummary& station : world.stations) out.stations[station.name] = json_of(station);
   for (const auto& [agent, rate] : world.traffic) out.traffic[agent] = json_of(rate);
@@ -145,7 +147,10 @@ Result<void> WorldBuilder::start(const json& complete) {
   at_ = world->at;
   const EncodedWorld parts = encoded(*world);
   head_ = parts.head;
-  head_world_ = {.station = world->station, .link = world->link, .commands = world->commands};
+  head_world_ = {.station = world->station,
+                 .link = world->link,
+                 .commands = world->commands,
+                 .findings = world->findings};
   for (const Robot& robot : world->robots)
     robots_[robot.name] = {parts.robots.at(robot.name), robot, at_ - robot.age};
   for (const StationSummary& station : world->stations)

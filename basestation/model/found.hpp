@@ -26,7 +26,8 @@ struct FoundItem {
   std::optional<double> age{};  ///< By the robot's clock, s; unset: unknown.
   Verdict verdict{Verdict::open};
   std::string note{};     ///< The operator's.
-  bool withdrawn{false};  ///< The robot took it back.
+  bool withdrawn{false};  ///< Its robot or operator took it back.
+  bool mark{false};       ///< An operator marked it; `robot` is the name of his station.
   bool operator==(const FoundItem&) const = default;
 };
 

@@ -162,11 +162,19 @@ void fields(Io& io, Of<Io, AgentRate>& rate) {
 }
 
 template <class Io>
+void fields(Io& io, Of<Io, FindingCounts>& counts) {
+  io.field("listed", counts.listed);
+  io.field("open", counts.open);
+  io.field("changes", counts.changes);
+}
+
+template <class Io>
 void fields(Io& io, Of<Io, World>& world) {
   io.field("at", world.at);
   io.field("station", world.station);
   io.field("link", world.link);
   io.field("commands", world.commands);
+  io.field("findings", world.findings);
   io.field("robots", world.robots);
   io.field("stations", world.stations);
   io.field("notices", world.notices);

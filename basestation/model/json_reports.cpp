@@ -118,6 +118,7 @@ void fields(Io& io, Of<Io, FoundItem>& item) {
   io.word("verdict", item.verdict, Verdict::rejected, [](Verdict verdict) { return to_string(verdict); });
   io.field("note", item.note);
   if (Io::kReads || item.withdrawn) io.field("withdrawn", item.withdrawn);
+  if (Io::kReads || item.mark) io.field("mark", item.mark);
 }
 
 template <class Io>
@@ -199,6 +200,7 @@ json json_of(const T& value) {
   return JsonWriter::of(value);
 }
 template json json_of(const Counts& counts);
+template json json_of(const FindingCounts& counts);
 template json json_of(const Robot& robot);
 template json json_of(const Notice& notice);
 template json json_of(const StationSummary& station);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -28,12 +29,21 @@ struct AgentRate {
   bool operator==(const AgentRate&) const = default;
 };
 
+/// How many findings a station lists. Front ends ask for the list when it changed.
+struct FindingCounts {
+  std::uint32_t listed{};   ///< Withdrawn and rejected ones, too.
+  std::uint32_t open{};     ///< Neither judged nor withdrawn.
+  std::uint64_t changes{};  ///< Changes of findings and judgements since the station's start.
+  bool operator==(const FindingCounts&) const = default;
+};
+
 /// All that a station reports to its front ends at one time.
 struct World {
   double at{};            ///< The station's clock, s; its start means nothing.
   std::string station{};  ///< Name of the operator.
   std::string link{};     ///< Link profile; empty: the traffic is not limited.
   Counts commands{};
+  FindingCounts findings{};
   std::vector<Robot> robots{};             ///< By name; in natural order at front ends.
   std::vector<StationSummary> stations{};  ///< This station first.
   std::vector<Notice> notices{};           ///< The newest, oldest first.

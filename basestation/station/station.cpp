@@ -81,6 +81,7 @@ void Station::observe() {
     content_.greet();
     presence_.announce_often();
   };
+  content_.on_findings = [this] { changed(); };
   commands_.on_answer = [this] { changed(); };
   commands_.on_down = [this] {
     if (on_down) on_down();
@@ -91,6 +92,7 @@ World Station::world() const {
   World world = world_of(fleet_, now());
   world.link = params_.link;
   world.commands = counts();
+  world.findings = content_.finding_counts();
   return world;
 }
 
@@ -109,6 +111,7 @@ void Station::tick() {
   for (const auto& [name, robot] : fleet_.robots())
     if (robot.located) radio_.set_place(robot.participant, {robot.x, robot.y, robot.z});
   content_.acknowledge();
+  content_.send_marks();
   commands_.tick();
 }
 

@@ -117,9 +117,14 @@ class Reader {
     for (std::size_t i = begin; i < end; ++i) {
       const Argument& argument = row_.arguments[i];
       if (!argument) continue;
-      const std::size_t extra =
+      std::size_t extra =
           std::min(spare, (std::size_t{argument.max_count} - argument.min_count) * argument.group) /
           argument.group;
+      // Words that follow an optional number as a text may begin where the number was left out.
+      const bool before_text = i + 1 < end && row_.arguments[i + 1].type == Type::text;
+      if (double number = 0.0; argument.type == Type::number && before_text && argument.min_count == 0 &&
+                               extra > 0 && !to_number(words_[from], number))
+        extra = 0;
       spare -= extra * argument.group;
       const std::size_t count = (argument.min_count + extra) * argument.group;
       const auto begin_of = words_.begin() + static_cast<std::ptrdiff_t>(from);

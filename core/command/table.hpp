@@ -32,6 +32,9 @@ inline constexpr Argument kFile{.name = "FILE", .type = Type::file, .what = "a f
 /// A finding, by the number that `findings` shows.
 inline constexpr Argument kFinding{
     .name = "N", .type = Type::number, .what = "the number of a finding", .minimum = 1.0, .maximum = 1e9};
+/// Words of free text, which may be left out.
+inline constexpr Argument kText{
+    .name = "TEXT", .type = Type::text, .what = "a text", .min_count = 0, .max_count = 64};
 inline constexpr Argument kOperator{.name = "OPERATOR", .type = Type::name, .what = "an operator"};
 
 constexpr Argument coordinate(std::string_view name, std::uint8_t least = 1) {
@@ -105,21 +108,40 @@ inline constexpr std::array kTable{
                 .runs = Runs::query,
                 .summary = "components of a robot, or of all",
                 .example = "health r1"},
-    CommandInfo{.name = "findings",
-                .arguments = {kMaybeRobots},
-                .runs = Runs::query,
-                .summary = "what robots found, most important first",
-                .details = "findings stay when their robot is gone",
-                .example = "findings r1"},
     CommandInfo{
-        .name = "finding note",
-        .arguments =
-            {kFinding, Argument{.name = "note", .type = Type::keyword},
-             Argument{.name = "TEXT", .type = Type::text, .what = "a text", .min_count = 0, .max_count = 64}},
-        .runs = Runs::station,
-        .summary = "store a note on a finding, at this station",
-        .details = "without TEXT the note is removed",
-        .example = "finding 3 note seen again by r2"},
+        .name = "findings",
+        .arguments = {kMaybeRobots},
+        .options = {Option{
+            .name = "--export", .summary = "write them to a file, .csv or .geojson", .values = {kFile}}},
+        .runs = Runs::query,
+        .summary = "what robots found and operators marked, most important first",
+        .details = "findings stay when their robot is gone",
+        .example = "findings r1"},
+    CommandInfo{.name = "finding add",
+                .arguments = {Argument{.name = "add", .type = Type::keyword},
+                              Argument{.name = "KIND",
+                                       .type = Type::name,
+                                       .what = "a kind of finding",
+                                       .choices = "person|fire|gas|hazard|blocked|artifact|exit"},
+                              coordinate("X"), coordinate("Y"), coordinate("Z", 0), kText},
+                .runs = Runs::station,
+                .summary = "mark something that you know of on the map",
+                .details =
+                    "without Z on the floor that robots saw there, else at 0; a text of up to 128 bytes; "
+                    "stored at this station",
+                .example = "finding add person 12 4.5 calls for help"},
+    CommandInfo{.name = "finding remove",
+                .arguments = {Argument{.name = "remove", .type = Type::keyword}, kFinding},
+                .runs = Runs::station,
+                .summary = "withdraw a mark of your own",
+                .details = "it stays in the list as withdrawn",
+                .example = "finding remove 4"},
+    CommandInfo{.name = "finding note",
+                .arguments = {kFinding, Argument{.name = "note", .type = Type::keyword}, kText},
+                .runs = Runs::station,
+                .summary = "store a note on a finding, at this station",
+                .details = "without TEXT the note is removed",
+                .example = "finding 3 note seen again by r2"},
     CommandInfo{.name = "finding",
                 .arguments = {kFinding, Argument{.name = "VERDICT",
                                                  .type = Type::choice,

@@ -49,6 +49,35 @@ TEST(Parse, GotoWithAndWithoutHeight) {
   EXPECT_TRUE(high->has("--wait"));
 }
 
+TEST(Parse, AMarkWithAndWithoutHeightAndText) {
+  const auto words = [](const Result<Request>& request) {
+    const ArgumentValue* text = request->find("TEXT");
+    return text ? text->words : std::vector<std::string>{};
+  };
+  const auto bare = parse("finding add person 12 -4.5");
+  ASSERT_TRUE(bare.ok());
+  EXPECT_EQ(bare->word("KIND"), "person");
+  EXPECT_EQ(bare->number("Y"), -4.5);
+  EXPECT_FALSE(bare->has("Z"));
+  const auto text = parse("finding add person 12 4.5 calls for help");
+  ASSERT_TRUE(text.ok()) << text.error().text;
+  EXPECT_FALSE(text->has("Z"));
+  EXPECT_THAT(words(text), ElementsAre("calls", "for", "help"));
+  const auto both = parse("finding add person 12 4.5 -3 calls for help");
+  EXPECT_EQ(both->number("Z"), -3.0);
+  EXPECT_THAT(words(both), ElementsAre("calls", "for", "help"));
+  const auto quoted = parse("finding add person 12 4.5 '3 of them'");
+  EXPECT_FALSE(quoted->has("Z"));
+  EXPECT_THAT(words(quoted), ElementsAre("3 of them"));
+  const auto number = parse("finding 3 note add 1 2");
+  EXPECT_EQ(number->verb, verb("finding note"));
+  for (const char* line :
+       {"finding add", "finding add person", "finding add person 1", "finding add person x 2",
+        "finding add 'two words' 1 2", "finding add person nan 2", "finding add person 1 1e9",
+        "finding add person 1 2 --photo x.jpg", "finding remove", "finding remove x"})
+    EXPECT_FALSE(parse(line).ok()) << line;
+}
+
 TEST(Parse, PoseOfARobot) {
   const auto pose = parse("pose r1 1 2 0.5");
   EXPECT_EQ(pose->number("X"), 1.0);

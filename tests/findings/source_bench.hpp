@@ -76,7 +76,9 @@ class FindingSourceTest : public testing::Test {
         station::FindingDesk::Outputs{
             [&op](const findings::Finding&) { ++op.found; },
             [&op](const std::string& code, const std::string&) { op.trouble.push_back(code); },
-            [&op](const findings::Finding& f) { op.changes.emplace_back(f.key.id, f.revision); }});
+            [&op](const findings::Finding&, const findings::Finding& f) {
+              op.changes.emplace_back(f.key.id, f.revision);
+            }});
     (void)op.desk->load();
   }
   void send() {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "basestation/map/floor_height.hpp"
 #include "basestation/map/ground_area.hpp"
 #include "basestation/map/merged_map.hpp"
 
@@ -120,6 +121,23 @@ TEST_F(ChunkStoreTest, PartsHaveWhatIsPlaced) {
   EXPECT_EQ(parts_of(chunks, "r1").size(), 1U);
   EXPECT_TRUE(parts_of(chunks, "r2").empty());
   EXPECT_FALSE(merged(parts_of(chunks), nullptr, 0.2).empty());
+}
+
+TEST_F(ChunkStoreTest, TheFloorOfAPlaceIsTheNearestToAHeight) {
+  constexpr std::uint64_t kFloor = 0xffff, kThick = 0xffff'ffff'ffff;
+  EXPECT_FALSE(floor_height(chunks, 0.3, 0.3, 0.0)) << "no map";
+  EXPECT_TRUE(chunks.take("r1", piece_of(key, {0, 0, 0}, kAll, kFloor, 1)));
+  EXPECT_FALSE(floor_height(chunks, 0.3, 0.3, 0.0)) << "its place is not known";
+  EXPECT_TRUE(chunks.take("r1", pose_of(key, Pose3::level({10.0, 5.0, M_PI / 2}, 2.0), 1)));
+  EXPECT_TRUE(chunks.take("r1", piece_of(key, {0, 0, 4}, kAll, kFloor, 1)));
+  EXPECT_TRUE(chunks.take("r1", piece_of(key, {0, 0, 8}, kAll, kThick, 1)));
+  const double x = 10.0 - 0.3, y = 5.0 + 0.5;  // (0.5, 0.3) of the submap.
+  EXPECT_NEAR(floor_height(chunks, x, y, 0.0).value_or(-1), 2.1, 1e-6);
+  EXPECT_NEAR(floor_height(chunks, x, y, 4.5).value_or(-1), 5.3, 1e-6);
+  EXPECT_NEAR(floor_height(chunks, x, y, 9.0).value_or(-1), 5.3, 1e-6)
+      << "nothing is seen free above the other";
+  EXPECT_FALSE(floor_height(chunks, 10.0 + 0.3, y, 0.0)) << "beside the submap";
+  EXPECT_FALSE(floor_height(chunks, 1e9, y, 0.0));
 }
 
 }  // namespace

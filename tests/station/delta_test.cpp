@@ -67,6 +67,7 @@ class Fiction {
     if (now_and_then(0.1)) robot.exploration.phase = ExplorationPhase::exploring;
     if (now_and_then(0.1)) robot.exploration = {};
     if (now_and_then(0.1)) world_.commands.accepted += 1;
+    if (now_and_then(0.1)) world_.findings = {1, now_and_then(0.5) ? 1U : 0U, world_.findings.changes + 1};
     if (now_and_then(0.1)) {
       if (world_.stations.size() == 1)
         world_.stations.push_back({.name = "op2", .place = std::array{1.0F, 2.0F, 3.0F}});
@@ -98,6 +99,7 @@ void expect_same(const World& built, const World& world) {
   }
   ASSERT_EQ(built.traffic.size(), world.traffic.size());
   EXPECT_EQ(built.commands, world.commands);
+  EXPECT_EQ(built.findings, world.findings);
   EXPECT_EQ(built.at, world.at);
 }
 

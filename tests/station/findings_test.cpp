@@ -145,6 +145,53 @@ TEST_F(FindingsTest, ThatAreWithdrawnStayInTheList) {
   EXPECT_FALSE(execute("findings").json["findings"][0].contains("withdrawn"));
 }
 
+TEST_F(FindingsTest, ThatChangeReachFrontEndsAndMakeALineInTheLogOnlyWhereWordsChange) {
+  const auto codes = [this] {
+    std::vector<std::string> all;
+    for (const StoredNotice& notice : op_->fleet().notices()) all.push_back(notice.code);
+    return all;
+  };
+  std::size_t calls = 0;
+  op_->on_changed = [&calls] { ++calls; };
+  find(1);
+  const auto counts = [this] { return op_->world().findings; };
+  EXPECT_EQ(counts().listed, 1U);
+  EXPECT_EQ(counts().open, 1U);
+  findings::Finding f = found(1);
+  const auto revise = [&] {
+    const std::uint64_t before = counts().changes;
+    const std::size_t lines = op_->fleet().notices().size();
+    ++f.revision;
+    send(findings::encode({"r1", 1, 0, {f}}));
+    EXPECT_EQ(counts().changes, before + 1);
+    return op_->fleet().notices().size() - lines;
+  };
+  f.position = {7, 8, 9};
+  f.data = {1, 2};
+  calls = 0;
+  EXPECT_EQ(revise(), 0U) << "a refined place";
+  EXPECT_GT(calls, 0U);
+  f.text = "a blue backpack";
+  EXPECT_EQ(revise(), 1U);
+  EXPECT_EQ(codes().back(), "finding_changed");
+  EXPECT_EQ(op_->fleet().notices().back().text, "finding 1 of r1 is now artifact: a blue backpack");
+  f.withdrawn = true;
+  EXPECT_EQ(revise(), 1U);
+  EXPECT_EQ(codes().back(), "finding_withdrawn");
+  EXPECT_EQ(counts().listed, 1U);
+  EXPECT_EQ(counts().open, 0U);
+  f.text = "still withdrawn";
+  EXPECT_EQ(revise(), 0U);
+  f.withdrawn = false;
+  EXPECT_EQ(revise(), 1U);
+  EXPECT_EQ(codes().back(), "found");
+  EXPECT_EQ(counts().open, 1U);
+  const std::uint64_t before = counts().changes;
+  EXPECT_EQ(execute("finding 1 confirm").exit_code, 0);
+  EXPECT_GT(counts().changes, before);
+  EXPECT_EQ(counts().open, 0U);
+}
+
 TEST_F(FindingsTest, SurviveARestartOfTheStation) {
   find(1);
   begin_station();

@@ -112,7 +112,9 @@ class Draw {
   World world() {
     World w{.station = text(),
             .link = text(),
-            .commands = {integer(), integer(), integer(), integer(), integer()}};
+            .commands = {integer(), integer(), integer(), integer(), integer()},
+            .findings = {static_cast<std::uint32_t>(below(1U << 31)),
+                         static_cast<std::uint32_t>(below(1U << 31)), integer()}};
     w.robots.resize(below(3));
     for (Robot& one : w.robots) one = robot();
     w.stations.resize(below(3));
@@ -210,6 +212,7 @@ TEST(ModelJson, AWorldComesBackAsItWas) {
     ASSERT_TRUE(back) << back.error().text;
     ASSERT_EQ(line_of(json_of(*back)), line_of(json_of(world)));
     ASSERT_EQ(back->commands, world.commands);
+    ASSERT_EQ(back->findings, world.findings);
     ASSERT_EQ(back->robots.size(), world.robots.size());
     ASSERT_EQ(back->traffic.size(), world.traffic.size());
   }

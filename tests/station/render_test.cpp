@@ -11,6 +11,7 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 World fleet(int robots) {
   World world{.station = "op1", .link = "wifi"};
@@ -49,6 +50,13 @@ std::string text(const std::vector<std::string>& lines) {
   std::string out;
   for (const std::string& line : lines) out += line + "\n";
   return out;
+}
+
+TEST(Render, TheTitleCountsFindings) {
+  World world = fleet(3);
+  EXPECT_THAT(render(world, {}, 20, 200, false)[0], Not(HasSubstr("findings")));
+  world.findings = {.listed = 5, .open = 2};
+  EXPECT_THAT(render(world, {}, 20, 200, false)[0], HasSubstr("findings 5, 2 new"));
 }
 
 TEST(Render, TheTypedLineAndTheKeysStayInViewInASmallWindow) {

@@ -232,6 +232,9 @@ std::vector<std::string> render(const World& world, const WatchState& state, int
                       (world.link.empty() ? "  no link profile" : "  link " + world.link) + "  commands " +
                       std::to_string(counts.accepted) + " done " + std::to_string(counts.refused) +
                       " refused " + std::to_string(counts.unanswered) + " unanswered";
+  const FindingCounts& findings = world.findings;
+  if (findings.listed > 0)
+    title += "  findings " + std::to_string(findings.listed) + ", " + std::to_string(findings.open) + " new";
   std::string others;
   for (const StationSummary& station : world.stations)
     if (!station.self) others += (others.empty() ? "  with " : ", ") + station.name;
