@@ -23,7 +23,8 @@ const std::set<QString> kLow{
     "commandRun",   "commandClose",    "commandField",  "proposal",      "cure",
     "closeDetails", "fitAll",          "solidToggle",   "cutToggle",     "areaToggle",
     "zoomIn",       "zoomOut",         "logWarnings",   "logSelected",   "logExport",
-    "logTextInput", "receptionToggle", "hearingToggle", "see",           "later"};
+    "logTextInput", "receptionToggle", "hearingToggle", "see",           "later",
+    "markToggle"};
 /// Texts that may be cut off: they are whole in another place, which is beside them.
 const std::map<QString, QString> kCut{{"budget", "the command net, with all that was not sent"}};
 
@@ -113,6 +114,9 @@ TEST_F(Accessibility, EveryTargetHasANameAndARoleAndIsLargeEnoughAndNoTextIsCutO
   control.command_line()->set_open(true);
   walk("command line");
   control.command_line()->set_open(false);
+  control.mark()->choose({6, 1}, std::nullopt);
+  walk("mark");
+  control.mark()->drop();
   control.set_solid(true);
   walk("three dimensions");
   control.set_solid(false);

@@ -40,6 +40,27 @@ TEST(Findings, StandAtTheirPlacesAndTheConfirmedOnesAreFilled) {
   EXPECT_EQ(texts(marks), (std::vector<std::string>{"7", "8"}));
 }
 
+TEST(Findings, ThatAreWithdrawnHaveNoStarAndNoTarget) {
+  station::FoundReport found = three_findings();
+  found.findings[0].withdrawn = found.findings[1].withdrawn = true;
+  const MarkList marks = layer_marks({.found = &found, .picked = 7, .project = from_above});
+  EXPECT_TRUE(marks.shapes.empty());
+  EXPECT_TRUE(marks.labels.empty());
+  EXPECT_EQ(marks.target_at(30, -40), nullptr);
+}
+
+TEST(Findings, AnOperatorsMarkIsAFlagWhosePoleStandsOnItsPlace) {
+  station::FoundReport found = three_findings();
+  found.findings[0].mark = true;
+  const MarkList marks = layer_marks({.found = &found, .project = from_above});
+  ASSERT_EQ(marks.shapes.size(), 2U);
+  ASSERT_EQ(marks.shapes[0].points.size(), 4U);
+  EXPECT_NEAR(marks.shapes[0].points[0].x, 30, 1e-9);
+  EXPECT_NEAR(marks.shapes[0].points[0].y, -40, 1e-9);
+  EXPECT_EQ(marks.shapes[1].points.size(), 10U) << "a star";
+  EXPECT_EQ(marks.target_at(30, -40)->finding, 7U);
+}
+
 TEST(Findings, ATapMeansTheNearestMark) {
   const station::FoundReport found = three_findings();
   MarkList marks = layer_marks({.found = &found, .project = from_above});

@@ -41,6 +41,43 @@ TEST_F(LayersTest, FindingsAreOnTheMapWithoutTheTabBeingOpen) {
   this->picture("finding_stars_light");
 }
 
+TEST_F(LayersTest, AFindingThatIsWithdrawnLosesItsStarInBothMapsAndIsGreyInItsTab) {
+  station::FoundReport found = some_findings();
+  answer(answer_of(found), "findings");
+  EXPECT_EQ(text("count_findings"), "1");
+  found.findings[0].withdrawn = true;
+  station::World world = ten_robots();
+  world.findings = {.listed = 3, .changes = 7};
+  show(world);
+  answer(answer_of(found), "findings");
+  EXPECT_EQ(star(map().marks(), 2), nullptr);
+  ASSERT_NE(star(map().marks(), 1), nullptr);
+  EXPECT_EQ(text("count_findings"), "");
+  show(world);
+  QTest::qWait(500);
+  EXPECT_EQ(std::ranges::count(sink.queries, "findings"), 2) << "nothing changed since";
+  open("findings");
+  answer(answer_of(found), "findings");
+  picture("finding_withdrawn");
+  control.tabs()->close();
+  control.set_solid(true);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return solid().voxels().paintings() > 0; }));
+  EXPECT_EQ(star(solid().marks(), 2), nullptr);
+  EXPECT_NE(star(solid().marks(), 1), nullptr);
+}
+
+TEST_F(LayersTest, FindingsThatNeverStopChangingAreStillAskedFor) {
+  answer(answer_of(some_findings()), "findings");
+  station::World world = ten_robots();
+  EXPECT_TRUE(QTest::qWaitFor(
+      [&] {
+        ++world.findings.changes;
+        show(world);
+        return std::ranges::count(sink.queries, "findings") > 1;
+      },
+      5000));
+}
+
 TEST_F(LayersTest, StairsAreRibbonsOnceTheStationListedThem) {
   answer(answer_of(findings_with_stairs()), "findings");
   EXPECT_NE(star(map().marks(), 5), nullptr) << "a star until then";

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "basestation/gui/bridge/settings_file.hpp"
+#include "basestation/model/found_file.hpp"
 
 namespace adit::gui {
 namespace {
@@ -66,8 +67,35 @@ TEST(Tables, NumbersThatAreNoneHaveNoBar) {
 TEST(Tables, ACsvHoldsItsCellsTogetherAndComputesNothing) {
   station::FoundReport report;
   report.findings = {{.number = 4, .robot = "r1", .kind = "=1+1", .text = "a \"b\", c", .note = "-x"}};
-  EXPECT_THAT(found_csv(report), HasSubstr("4,\"r1\",\"\",\"'=1+1\",0,0.000,0.000,0.000,,open,"
-                                           "\"a \"\"b\"\", c\",\"'-x\"\r\n"));
+  EXPECT_THAT(station::found_csv(report), HasSubstr("4,\"r1\",\"\",\"'=1+1\",0,0.000,0.000,0.000,,open,"
+                                                    "\"a \"\"b\"\", c\",\"'-x\",no,no\r\n"));
+  report.findings[0].withdrawn = true;
+  EXPECT_THAT(station::found_csv(report), HasSubstr("\"'-x\",yes,no\r\n"));
+}
+
+TEST(Tables, OnlyMarksOfThisStationCanBeRemoved) {
+  station::FoundReport report;
+  report.findings = {{.number = 1, .robot = "op1", .mark = true},
+                     {.number = 2, .robot = "op2", .mark = true},
+                     {.number = 3, .robot = "op1"},
+                     {.number = 4, .robot = "op1", .withdrawn = true, .mark = true}};
+  const auto rows = found_rows(report, "op1");
+  EXPECT_TRUE(rows[0].removable);
+  EXPECT_EQ(rows[0].robot, "op1 (mark)");
+  for (std::size_t i = 1; i < rows.size(); ++i) EXPECT_FALSE(rows[i].removable) << i;
+}
+
+TEST(Tables, FindingsThatAreWithdrawnAreGrey) {
+  station::FoundReport report;
+  report.findings = {{.number = 1, .withdrawn = true},
+                     {.number = 2, .verdict = station::Verdict::confirmed, .withdrawn = true},
+                     {.number = 3, .verdict = station::Verdict::confirmed}};
+  const auto rows = found_rows(report, "op1");
+  EXPECT_EQ(rows[0].token, Token::dim);
+  EXPECT_EQ(rows[1].token, Token::dim);
+  EXPECT_TRUE(rows[1].withdrawn);
+  EXPECT_EQ(rows[2].token, Token::ok);
+  EXPECT_FALSE(rows[2].withdrawn);
 }
 
 TEST(Tables, StaircasesSayWhoMayClimbThemAndWhyOthersMayNot) {

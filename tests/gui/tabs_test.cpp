@@ -259,7 +259,7 @@ TEST_F(TabsTest, TheLogAndTheFindingsAreExportedAndThePathIsShown) {
   control.tabs()->exportFindings();
   const QDir state(folder.path() + "/state/adit");
   const QStringList names = state.entryList(QDir::Files);
-  ASSERT_EQ(names.size(), 3) << names.join(" ").toStdString();
+  ASSERT_EQ(names.size(), 4) << names.join(" ").toStdString();
   for (const QString& name : names) {
     QFile file(state.filePath(name));
     ASSERT_TRUE(file.open(QIODevice::ReadOnly));

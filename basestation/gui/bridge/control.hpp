@@ -19,6 +19,7 @@
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/detail_list.hpp"
 #include "basestation/gui/bridge/drive_control.hpp"
+#include "basestation/gui/bridge/mark_tool.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
 #include "basestation/gui/bridge/tabs.hpp"
 #include "basestation/gui/scene/camera.hpp"
@@ -47,6 +48,7 @@ class Control : public QObject {
   Q_PROPERTY(int lostCount READ lost_count NOTIFY shown)
   Q_PROPERTY(QString others READ others NOTIFY shown)
   Q_PROPERTY(adit::gui::AreaTool* area READ area CONSTANT)
+  Q_PROPERTY(adit::gui::MarkTool* mark READ mark CONSTANT)
   Q_PROPERTY(adit::gui::AttentionList* attention READ attention CONSTANT)
   Q_PROPERTY(adit::gui::DetailList* details READ details CONSTANT)
   Q_PROPERTY(adit::gui::DriveControl* drive READ drive CONSTANT)
@@ -91,7 +93,8 @@ class Control : public QObject {
   double silent_for() const { return silent_for_; }
   /// Goals of the robots that would drive if that place was tapped, map frame, m.
   std::vector<Point> goals_at(const Point& place) const;
-  /// Sends the robots of the selection that would accept it to a place, map frame, m.
+  /// Sends the robots of the selection that would accept it to a place, map frame, m. Without a selection the
+  /// place is marked.
   /// `z`: height of the ground there, if it is known. `held`: by a press that was held; see goto_is_held().
   void go_to(const Point& place, std::optional<double> z, bool held);
   /// Whether they are so many that a tap on the place is not enough.
@@ -149,6 +152,7 @@ class Control : public QObject {
   int lost_count() const { return lost_; }
   QString others() const;
   AreaTool* area() { return &area_; }
+  MarkTool* mark() { return &mark_; }
   AttentionList* attention() { return &attention_; }
   DetailList* details() { return &details_; }
   DriveControl* drive() { return &drive_; }
@@ -229,6 +233,7 @@ class Control : public QObject {
   qint64 next_row_{1};
   int mine_{}, lost_{}, stopped_{};
   AreaTool area_{*this};
+  MarkTool mark_{*this};
   AttentionList attention_{*this};
   DetailList details_{*this};
   DriveControl drive_{*this};

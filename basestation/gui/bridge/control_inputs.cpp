@@ -227,6 +227,7 @@ void Control::ask_for_place(const BarButton& button) {
 
 void Control::go_to(const Point& place, std::optional<double> z, bool held) {
   const BarButton button = bar_.buttons[slot_index("goto")];
+  if (selection_.empty() && !aiming_) return mark_.choose(place, z);  // There is no other action at a place.
   if (goto_is_held() && !held) return ask_for_place(button);
   set_aiming(false);
   pending_line_.clear();
@@ -329,6 +330,8 @@ void Control::take_back() {
   emit orders_dropped();
   if (area_.active()) {
     area_.set_active(false);
+  } else if (mark_.active() || mark_.ready()) {
+    mark_.drop();
   } else if (aiming_ || reasons_open_ || attention_.is_open() || !pending_line_.empty()) {
     if (aiming_ || !pending_line_.empty()) say("Taken back.", "sent");
     set_aiming(false);

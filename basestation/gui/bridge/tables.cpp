@@ -76,13 +76,6 @@ void show_budget(const station::SenderReport* sender, const station::AgentTraffi
 
 bool full(const station::SenderReport* sender) { return sender && sender->queue > kFullQueue; }
 
-std::string csv_cell(std::string text) {
-  if (!text.empty() && std::string("=+-@\t\r").find(text[0]) != std::string::npos) text.insert(0, "'");
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 }  // namespace
 
 HealthTable health_table(const station::HealthReport& report, const station::World& world) {
@@ -174,13 +167,13 @@ std::vector<NetworkRow> network_rows(const station::NetworkReport& report, const
   return rows;
 }
 
-std::vector<FoundRow> found_rows(const station::FoundReport& report) {
+std::vector<FoundRow> found_rows(const station::FoundReport& report, const std::string& own) {
   std::vector<FoundRow> rows;
   for (const station::FoundItem& item : report.findings) {
     FoundRow row{.number = static_cast<int>(item.number),
                  .importance = std::to_string(item.importance),
                  .kind = item.kind,
-                 .robot = item.robot,
+                 .robot = item.robot + (item.mark ? " (mark)" : ""),
                  .text = item.text,
                  .note = item.note};
     row.place = station::fixed(item.position[0], 1) + " " + station::fixed(item.position[1], 1) + " " +
@@ -188,8 +181,11 @@ std::vector<FoundRow> found_rows(const station::FoundReport& report) {
     row.age = item.age ? age_text(*item.age) : "-";
     const bool open = item.verdict == station::Verdict::open;
     row.verdict = open ? "new" : to_string(item.verdict);
+    row.withdrawn = item.withdrawn;
+    row.removable = item.mark && !item.withdrawn && item.robot == own;
     row.shape = open ? "ring" : item.verdict == station::Verdict::confirmed ? "disc" : "square";
-    row.token = open ? Token::text : item.verdict == station::Verdict::confirmed ? Token::ok : Token::dim;
+    const bool dim = item.withdrawn || item.verdict == station::Verdict::rejected;
+    row.token = dim ? Token::dim : open ? Token::text : Token::ok;
     rows.push_back(std::move(row));
   }
   return rows;
@@ -203,18 +199,6 @@ std::string found_missing(const station::FoundReport& report) {
              robot.robot;
     if (robot.overflowed > 0)
       out += (out.empty() ? "" : ", ") + robot.robot + " had no room for " + std::to_string(robot.overflowed);
-  }
-  return out;
-}
-
-std::string found_csv(const station::FoundReport& report) {
-  std::string out = "number,robot,id,kind,importance,x,y,z,age,verdict,text,note\r\n";
-  for (const station::FoundItem& item : report.findings) {
-    out += std::to_string(item.number) + "," + csv_cell(item.robot) + "," + csv_cell(item.id) + "," +
-           csv_cell(item.kind) + "," + std::to_string(item.importance);
-    for (const double axis : item.position) out += "," + (std::isfinite(axis) ? station::fixed(axis, 3) : "");
-    out += "," + (item.age ? station::fixed(*item.age, 0) : "") + "," + to_string(item.verdict) + "," +
-           csv_cell(item.text) + "," + csv_cell(item.note) + "\r\n";
   }
   return out;
 }

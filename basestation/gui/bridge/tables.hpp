@@ -69,14 +69,14 @@ struct FoundRow {
   std::string verdict{};  ///< "new", "confirmed", "rejected".
   std::string shape{};
   Token token{Token::none};
+  bool withdrawn{};
+  bool removable{};  ///< A mark of this station.
   bool operator==(const FoundRow&) const = default;
 };
-std::vector<FoundRow> found_rows(const station::FoundReport& report);
+/// `own`: the name of this station.
+std::vector<FoundRow> found_rows(const station::FoundReport& report, const std::string& own);
 /// What robots still store: "r4 still stores 3 that are not here".
 std::string found_missing(const station::FoundReport& report);
-/// The findings as a file. CSV: RFC 4180; cells that a spreadsheet would compute begin with an apostrophe.
-std::string found_csv(const station::FoundReport& report);
-
 /// A staircase as a row of its tab.
 struct StairsRow {
   int number{};

@@ -7,10 +7,12 @@
 #include <QSaveFile>
 #include <QStandardPaths>
 #include <algorithm>
+#include <utility>
 
 #include "basestation/client/connection.hpp"
 #include "basestation/client/paths.hpp"
 #include "basestation/gui/scene/camera.hpp"
+#include "basestation/model/found_file.hpp"
 
 namespace adit::gui {
 namespace {
@@ -37,7 +39,7 @@ TabState::TabState(CommandSink& sink, RowModel& log, QObject* parent)
       speakers_({"name"}, this),
       hearing_({"cell", "name", "label", "shape", "token"}, this),
       findings_({"number", "importance", "kind", "robot", "place", "age", "line", "note", "verdict", "shape",
-                 "token"},
+                 "token", "withdrawn", "removable"},
                 this),
       stairs_({"number", "direction", "turn", "steps", "floors", "step", "breadth", "robots", "verdict",
                "climbers", "others", "token"},
@@ -56,17 +58,24 @@ void TabState::show(const std::shared_ptr<const station::World>& world,
                     const std::vector<std::string>& selection, bool silent) {
   world_ = world;
   log_.set_selection(selection);
-  if (silent_ && !silent && !world_->station.empty()) found_later_.start();  // There is a station again.
-  if (!world_->station.empty()) silent_ = silent;
+  if (!world_->station.empty()) {
+    const bool is_back = std::exchange(silent_, silent) && !silent;
+    if (is_back || world_->findings.changes != found_changes_) find_later();
+    found_changes_ = world_->findings.changes;
+  }
   show_tabs();
 }
 
 void TabState::add_notice(const station::Notice& notice) {
-  if (notice.code == "found") found_later_.start();
+  if (notice.code == "found") find_later();  // A station of an earlier release counts no changes.
 }
 
 void TabState::add_command(const station::CommandEvent& event) {
-  if (event.ended && event.line.starts_with("finding ")) found_later_.start();
+  if (event.ended && event.line.starts_with("finding ")) find_later();
+}
+
+void TabState::find_later() {
+  if (!found_later_.isActive()) found_later_.start();  // Changes that never pause do not put it off.
 }
 
 bool TabState::press_key(int key) {
@@ -170,6 +179,8 @@ void TabState::judge(int finding, const QString& verdict) {
   emit ordered(QString("finding %1 %2").arg(finding).arg(verdict));
 }
 
+void TabState::removeMark(int finding) { emit ordered(QString("finding remove %1").arg(finding)); }
+
 void TabState::pickFinding(int finding) {
   picked_ = static_cast<std::uint32_t>(finding);
   emit shown();
@@ -226,7 +237,8 @@ void TabState::endNote(const QString& text, bool send) {
 void TabState::exportLog() { write("log.txt", log_.as_text().toUtf8()); }
 
 void TabState::exportFindings() {
-  write("findings.csv", QByteArray::fromStdString(found_csv(found_)));
+  write("findings.csv", QByteArray::fromStdString(station::found_csv(found_)));
+  write("findings.geojson", QByteArray::fromStdString(station::found_geojson(found_)));
   write("findings.json", QByteArray::fromStdString(station::findings_text_of(found_)));
 }
 

@@ -23,7 +23,7 @@ namespace adit::gui {
 
 /// The tabs at the bottom of the window: which one is open, and what they show. The log can stay open; the
 /// others cover the map's lower part until they are closed. Health, network and staircases are asked for once
-/// a second, only while they are open; findings, and the staircases among them, when there are new ones.
+/// a second, only while they are open; findings, and the staircases among them, when they changed.
 class TabState : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -73,6 +73,7 @@ class TabState : public QObject {
   Q_INVOKABLE void restartChosen();
   Q_INVOKABLE void changePolicy();  ///< From automatic to manual, or back.
   Q_INVOKABLE void judge(int finding, const QString& verdict);
+  Q_INVOKABLE void removeMark(int finding);
   /// Marks a finding, and asks the map to show its place.
   Q_INVOKABLE void pickFinding(int finding);
   /// Marks a staircase by its number, and asks the map to show its middle.
@@ -123,6 +124,7 @@ class TabState : public QObject {
  private:
   void time_questions();  ///< Starts or stops them.
   void ask();
+  void find_later();  ///< Asks for the findings soon.
   void ask_findings();
   void ask_stairs();
   template <class Report>
@@ -147,7 +149,8 @@ class TabState : public QObject {
   QTimer timer_{};        ///< Runs while a tab that asks is open.
   QTimer found_later_{};  ///< Several findings at once are asked for once.
   bool health_asked_{false}, network_asked_{false}, found_asked_{false};
-  bool found_again_{false};  ///< Findings changed while they were asked for.
+  std::uint64_t found_changes_{};  ///< Of the last world.
+  bool found_again_{false};        ///< Findings changed while they were asked for.
   station::HealthReport health_{};
   station::NetworkReport net_{};
   bool watching_network_{false};

@@ -8,9 +8,9 @@
 
 namespace adit::gui {
 void TabState::show_tabs() {
-  const auto open_findings =
-      std::count_if(found_.findings.begin(), found_.findings.end(),
-                    [](const station::FoundItem& item) { return item.verdict == station::Verdict::open; });
+  const auto open_findings = std::ranges::count_if(found_.findings, [](const station::FoundItem& item) {
+    return item.verdict == station::Verdict::open && !item.withdrawn;
+  });
   const auto staircases = std::ranges::count_if(stairs_report_.stairs, [](const station::StairsItem& item) {
     return item.verdict != station::Verdict::rejected;
   });
@@ -73,15 +73,16 @@ void TabState::show_network() {
 
 void TabState::show_findings() {
   std::vector<QVariantList> rows;
-  for (const FoundRow& row : found_rows(found_))
+  for (const FoundRow& row : found_rows(found_, world_->station))
     rows.push_back({row.number, text_of(row.importance), text_of(row.kind), text_of(row.robot),
                     text_of(row.place), text_of(row.age), text_of(row.text), text_of(row.note),
-                    text_of(row.verdict), text_of(row.shape), word_of(row.token)});
+                    text_of(row.verdict), text_of(row.shape), word_of(row.token), row.withdrawn,
+                    row.removable});
   findings_.show(std::move(rows));
   missing_ = text_of(found_missing(found_));
   show_tabs();
   emit findings_changed();
-  if (found_again_) found_later_.start();
+  if (found_again_) find_later();
   const bool has_stairs = std::ranges::any_of(
       found_.findings, [](const station::FoundItem& item) { return item.kind == findings::kStairs; });
   if (has_stairs || !stairs_report_.stairs.empty()) ask_stairs();

@@ -16,9 +16,11 @@ Rectangle {
     required property string verdict
     required property string shape
     required property string token
+    required property bool withdrawn
+    required property bool removable
     height: 14 * Theme.mm
     color: Theme.raised
-    opacity: verdict === "rejected" ? 0.6 : 1
+    opacity: verdict === "rejected" || withdrawn ? 0.6 : 1
     border.width: state_.pickedFinding === number ? 2 : 0
     border.color: Theme.text
 
@@ -47,8 +49,9 @@ Rectangle {
         y: 1 * Theme.mm
         width: buttons.x - 9 * Theme.mm
         height: 6 * Theme.mm
-        font.bold: true
-        text: row.number + "  " + row.kind + "   " + row.robot + "   " + row.verdict + "   importance " + row.importance + "   at " + row.place + "   " + row.age
+        font.bold: !row.withdrawn
+        color: row.withdrawn ? Theme.dim : Theme.text
+        text: row.number + "  " + row.kind + "   " + row.robot + "   " + (row.withdrawn ? row.verdict === "new" ? "withdrawn" : row.verdict + ", withdrawn" : row.verdict) + "   importance " + row.importance + "   at " + row.place + "   " + row.age
     }
     PlainLabel {
         x: 7 * Theme.mm
@@ -73,7 +76,17 @@ Rectangle {
             onFired: row.state_.judge(row.number, active ? "reopen" : "confirm")
         }
         HoldButton {
+            objectName: "remove_" + row.number
+            visible: row.removable
+            width: 24 * Theme.mm
+            height: 13 * Theme.mm
+            meaning: row.number + row.verdict
+            text: "remove"
+            onFired: row.state_.removeMark(row.number)
+        }
+        HoldButton {
             objectName: "reject_" + row.number
+            visible: !row.removable
             width: 24 * Theme.mm
             height: 13 * Theme.mm
             active: row.verdict === "rejected"

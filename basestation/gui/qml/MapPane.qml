@@ -7,7 +7,7 @@ Rectangle {
     required property Control control
     property double covered: 0
     color: Theme.ground
-    border.width: control.aiming ? 3 : 0
+    border.width: control.aiming || control.mark.active ? 3 : 0
     border.color: Theme.goal
 
     MapView {
@@ -60,6 +60,12 @@ Rectangle {
     }
     AreaMenu {
         area: pane.control.area
+        anchors.horizontalCenter: parent.horizontalCenter
+        anchors.bottom: parent.bottom
+        anchors.bottomMargin: 3 * Theme.mm
+    }
+    MarkMenu {
+        mark: pane.control.mark
         anchors.horizontalCenter: parent.horizontalCenter
         anchors.bottom: parent.bottom
         anchors.bottomMargin: 3 * Theme.mm
@@ -128,6 +134,13 @@ Rectangle {
                 text: "area"
                 onFired: pane.control.area.active = !pane.control.area.active
             }
+        }
+        Wide {
+            objectName: "markToggle"
+            anchors.right: parent.right
+            active: pane.control.mark.active
+            text: "mark"
+            onFired: pane.control.mark.active = !pane.control.mark.active
         }
         Row {
             anchors.right: parent.right

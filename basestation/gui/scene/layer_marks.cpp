@@ -26,6 +26,17 @@ Shape star(const Point& at, double radius) {
   return out;
 }
 
+/// The flag of an operator's mark; its pole stands on the place.
+Shape flag(const Point& at, double radius) {
+  return {.points = {at,
+                     {at.x, at.y - 2 * radius},
+                     {at.x + 1.5 * radius, at.y - 1.5 * radius},
+                     {at.x, at.y - radius}},
+          .closed = true,
+          .line = Token::text,
+          .width = 2.0};
+}
+
 /// How many floors above the one that is shown something at that height stands, m; 0: on it, or all are
 /// shown.
 int other_floor(const LayerScene& scene, double z) {
@@ -41,7 +52,7 @@ void add_finding(const LayerScene& scene, const station::FoundItem& item, MarkLi
   const double radius = 2.8 * scene.mm;
   const bool picked = item.number == scene.picked;
   const double opacity = other_floor(scene, z) == 0 ? 1.0 : 0.4;
-  Shape shape = star(*at, radius);
+  Shape shape = item.mark ? flag(*at, radius) : star(*at, radius);
   shape.filled = item.verdict == station::Verdict::confirmed;
   shape.fill = Token::ok;
   shape.opacity = opacity;
@@ -49,7 +60,8 @@ void add_finding(const LayerScene& scene, const station::FoundItem& item, MarkLi
     out.shapes.push_back(
         {.points = circle(*at, radius + 5), .closed = true, .line = Token::text, .width = 3.0});
   out.shapes.push_back(std::move(shape));
-  out.labels.push_back({.at = {at->x, at->y - radius - (picked ? 14 : 8)},
+  const double above = item.mark ? 2 * radius : radius;
+  out.labels.push_back({.at = {at->x, at->y - above - (picked ? 14 : 8)},
                         .text = std::to_string(item.number) + (picked ? " " + item.kind : ""),
                         .opacity = opacity});
   out.targets.push_back({.at = *at, .radius = 6.0 * scene.mm, .finding = item.number});
@@ -103,7 +115,8 @@ MarkList layer_marks(const LayerScene& scene) {
   std::size_t stars = 0;
   if (scene.found)
     for (const station::FoundItem& item : scene.found->findings) {
-      if (item.verdict == station::Verdict::rejected || in_ribbons.contains(item.number)) continue;
+      if (item.withdrawn || item.verdict == station::Verdict::rejected || in_ribbons.contains(item.number))
+        continue;
       if (++stars > kMaxStars) break;
       add_finding(scene, item, out);
     }
@@ -130,6 +143,11 @@ MarkList floor_marks(const LayerScene& scene) {
          .text = scene.floors->floors()[*scene.floor + static_cast<std::size_t>(above)].name});
   }
   return out;
+}
+
+void add_flag(MarkList& marks, const Point& at, double mm) {
+  marks.shapes.push_back(flag(at, 2.8 * mm));
+  marks.shapes.back().line = Token::goal;
 }
 
 void append(MarkList& marks, MarkList more) {

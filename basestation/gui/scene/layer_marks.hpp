@@ -29,13 +29,16 @@ struct LayerScene {
   double mm{3.78};                     ///< Pixels per mm.
 };
 
-/// Ribbons of staircases. Stars of findings: a rejected one has none, that of a confirmed one is filled, and
-/// what is part of a staircase has no star. Lines through the robots of convoys in their order, with the
-/// place of each one.
+/// Ribbons of staircases. Stars of findings, flags of operators' marks: a rejected or withdrawn one has none,
+/// that of a confirmed one is filled, and what is part of a staircase has no star. Lines through the robots
+/// of convoys in their order, with the place of each one.
 MarkList layer_marks(const LayerScene& scene);
 
 /// Arrows beside the robots that are on other floors than the one that is shown, with the floor's name.
 MarkList floor_marks(const LayerScene& scene);
+
+/// The flag of a mark that is not sent yet. `at`: pixels. `mm`: pixels per mm.
+void add_flag(MarkList& marks, const Point& at, double mm);
 
 /// Puts more marks above those of a list.
 void append(MarkList& marks, MarkList more);

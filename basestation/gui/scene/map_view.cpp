@@ -18,11 +18,13 @@ MapView::MapView(QQuickItem* parent)
 void MapView::set_control(Control* control) {
   if (control == control_) return;
   if (control_)
-    control_->disconnect(this), control_->area()->disconnect(this), control_->tabs()->disconnect(this);
+    control_->disconnect(this), control_->area()->disconnect(this), control_->mark()->disconnect(this),
+        control_->tabs()->disconnect(this);
   control_ = control;
   if (control_) {
     connect(control_, &Control::shown, this, &MapView::refresh);
     connect(control_->area(), &AreaTool::changed, this, &MapView::refresh);
+    connect(control_->mark(), &MarkTool::changed, this, &MapView::refresh);
     connect(control_->tabs(), &TabState::findings_changed, this, &MapView::refresh);
     connect(control_->tabs(), &TabState::network_changed, this, &MapView::measure_reception);
     connect(control_, &Control::look_at, this, &MapView::look_at);
@@ -81,6 +83,8 @@ void MapView::refresh() {
                           .silent = control_->silent_for(),
                           .mm = Theme::instance().mm()}));
   append(marks, floor_marks(layers));
+  if (const auto& place = control_->mark()->place())
+    add_flag(marks, camera_.to_screen(place->x, place->y), Theme::instance().mm());
   if (aims() && needs_hold())
     add_ring(marks, {pressed_at().x(), pressed_at().y()}, held_share(), Theme::instance().mm());
   marks_->show(std::move(marks), camera_);
@@ -153,7 +157,9 @@ void MapView::tap(const QPointF& at, bool add) {
 }
 
 void MapView::show_aim(const QPointF& at) {
-  if (control_) ghosts_ = control_->goals_at(camera_.to_map(at.x(), at.y()));
+  if (!control_) return;
+  const Point place = camera_.to_map(at.x(), at.y());
+  ghosts_ = control_->mark()->active() ? std::vector{place} : control_->goals_at(place);
   refresh();
 }
 
@@ -167,6 +173,7 @@ void MapView::send_aim(const QPointF& at, bool held) {
   const Point place = camera_.to_map(at.x(), at.y());
   std::optional<double> height;  // Only one of several floors has to be named.
   if (const auto floor = shown_floor()) height = ground_at(*control_->map(), *floor, place);
+  if (control_->mark()->active()) return control_->mark()->choose(place, height);
   control_->go_to(place, height, held);
 }
 

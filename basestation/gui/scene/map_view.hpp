@@ -62,13 +62,15 @@ class MapView : public adit::gui::GestureArea {
 
  protected:
   void geometryChange(const QRectF& now, const QRectF& before) override;
-  bool aiming() const override { return control_ && control_->aiming(); }
+  bool aiming() const override { return control_ && (control_->aiming() || control_->mark()->active()); }
   bool drawing() const override { return control_ && control_->area()->active(); }
   double slop() const override;
   void tap(const QPointF& at, bool add) override;
   void show_aim(const QPointF& at) override;
   void drop_aim() override;
-  bool needs_hold() const override { return control_ && control_->goto_is_held(); }
+  bool needs_hold() const override {
+    return control_ && control_->goto_is_held() && !control_->mark()->active();
+  }
   void send_aim(const QPointF& at, bool held) override;
   void draw(const QPointF& from, const QPointF& to, bool done) override;
   void drop_drawing() override;

@@ -43,10 +43,12 @@ MapView3D::MapView3D(QQuickItem* parent)
 
 void MapView3D::set_control(Control* control) {
   if (control == control_) return;
-  if (control_) control_->disconnect(this), control_->tabs()->disconnect(this);
+  if (control_)
+    control_->disconnect(this), control_->mark()->disconnect(this), control_->tabs()->disconnect(this);
   control_ = control;
   if (control_) {
     connect(control_, &Control::shown, this, &MapView3D::refresh);
+    connect(control_->mark(), &MarkTool::changed, this, &MapView3D::refresh);
     connect(control_->tabs(), &TabState::findings_changed, this, &MapView3D::refresh);
     connect(control_, &Control::orders_dropped, this, [this] { drop_press(); });
     connect(control_, &Control::look_at, this, &MapView3D::look_at);
@@ -112,6 +114,9 @@ void MapView3D::refresh() {
                              .ghosts = ghosts_,
                              .silent = control_->silent_for(),
                              .mm = Theme::instance().mm()}));
+  if (const auto& place = control_->mark()->place())
+    if (const auto at = project({place->x, place->y, control_->mark()->height()}))
+      add_flag(marks, *at, Theme::instance().mm());
   if (aims() && needs_hold())
     add_ring(marks, {pressed_at().x(), pressed_at().y()}, held_share(), Theme::instance().mm());
   marks_->show(std::move(marks), {.scale = 0.0});
@@ -177,9 +182,13 @@ std::optional<Point3> MapView3D::place_at(const QPointF& at) const {
 
 void MapView3D::show_aim(const QPointF& at) {
   ghosts_.clear();
-  if (const auto place = control_ ? place_at(at) : std::nullopt)
-    for (const Point& goal : control_->goals_at({place->x, place->y}))
-      ghosts_.push_back({goal.x, goal.y, place->z});
+  if (const auto place = control_ ? place_at(at) : std::nullopt) {
+    if (control_->mark()->active())
+      ghosts_.push_back(*place);
+    else
+      for (const Point& goal : control_->goals_at({place->x, place->y}))
+        ghosts_.push_back({goal.x, goal.y, place->z});
+  }
   refresh();
 }
 
@@ -190,10 +199,14 @@ void MapView3D::drop_aim() {
 
 void MapView3D::send_aim(const QPointF& at, bool held) {
   if (!control_) return;
-  if (const auto place = place_at(at))
-    control_->go_to({place->x, place->y}, place->z, held);
+  const auto place = place_at(at);
+  const bool marks = control_->mark()->active();
+  if (!place)
+    control_->say(QString(marks ? "Mark" : "Go to") + ": nothing of the map is there", "refused");
+  else if (marks)
+    control_->mark()->choose({place->x, place->y}, place->z);
   else
-    control_->say("Go to: nothing of the map is there", "refused");
+    control_->go_to({place->x, place->y}, place->z, held);
 }
 
 void MapView3D::pan(const QPointF& by) {

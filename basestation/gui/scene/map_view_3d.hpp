@@ -81,12 +81,14 @@ class MapView3D : public adit::gui::GestureArea {
  protected:
   void geometryChange(const QRectF& now, const QRectF& before) override;
   void itemChange(ItemChange change, const ItemChangeData& data) override;
-  bool aiming() const override { return control_ && control_->aiming(); }
+  bool aiming() const override { return control_ && (control_->aiming() || control_->mark()->active()); }
   double slop() const override;
   void tap(const QPointF& at, bool add) override;
   void show_aim(const QPointF& at) override;
   void drop_aim() override;
-  bool needs_hold() const override { return control_ && control_->goto_is_held(); }
+  bool needs_hold() const override {
+    return control_ && control_->goto_is_held() && !control_->mark()->active();
+  }
   void send_aim(const QPointF& at, bool held) override;
   void pan(const QPointF& by) override;
   void zoom(double factor, const QPointF& about) override;
