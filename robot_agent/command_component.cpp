@@ -478,7 +478,6 @@ void Agent::CommandComponent::seek_stairs(const std::shared_ptr<const Scan>& sca
   const Localisation health = localiser_.health(now());
   if (!context_.stairs || scan->planar || health == Localisation::lost || health == Localisation::starting)
     return;
-  if (scans_for_stairs_++ % 2 != 0) return;
   auto job = std::make_shared<StairsJob>(StairsJob{scan, team(now()), frames_.odom_epoch(), now()});
   call(context_.stairs_search, std::shared_ptr<const StairsJob>(std::move(job)), {.deadline = 2s},
        [this](const Result<StairsStep>& step) {

@@ -180,8 +180,7 @@ class Agent::CommandComponent : public Component {
   RateLimit<bool> namesakes_reported_{10s};  // The key is `gives_way_`.
   RateLimit<int> refusals_reported_{10s};    // Under one key: a stranger may invent any number of names.
   BeaconRate beacon_rate_{};
-  std::uint32_t beats_{};  ///< Number of calls of beat().
-  std::uint32_t scans_for_stairs_{};
+  std::uint32_t beats_{};    ///< Number of calls of beat().
   std::uint32_t beacons_{};  ///< Number of beacons sent.
   std::vector<Timer> timers_{};
 };

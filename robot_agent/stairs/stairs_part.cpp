@@ -9,7 +9,8 @@ namespace adit::agent {
 
 namespace {
 
-constexpr float kFar = 8.0f;  // Points are used within 6 m of the newest scan's place, m.
+constexpr float kFar = 8.0f;      // Points are used within 6 m of the newest scan's place, m.
+constexpr double kAtRest = 0.05;  // Way in the window of a body that stands and sways, m.
 
 }  // namespace
 
@@ -41,9 +42,13 @@ Result<void> StairsPart::on_start() {
 
 bool StairsPart::is_due(const StairsJob& job) const {
   if (searching_) return false;
-  if (!sought_) return true;
-  return job.made - *sought_ >= params_.period &&
-         (job.scan->located.position - sought_from_).norm() >= params_.least_way;
+  if (!sought_from_) return true;
+  const Eigen::Vector3d at = job.scan->located.position;
+  const double way = (at - *sought_from_).norm();
+  // Where it came to rest, no motion blurs the scans.
+  const bool rests =
+      scans_.size() == params_.most_scans && (at - scans_.front()->scan->located.position).norm() < kAtRest;
+  return way >= params_.least_way || (rests && way >= 2 * kAtRest);
 }
 
 void StairsPart::take(const std::shared_ptr<const StairsJob>& job, const Reply<StairsStep>& reply) {
@@ -52,13 +57,12 @@ void StairsPart::take(const std::shared_ptr<const StairsJob>& job, const Reply<S
       (scans_.back()->odom_epoch != job->odom_epoch || scans_.back()->scan->jumps != job->scan->jumps)) {
     scans_.clear();
     tracker_.clear();
-    sought_.reset();
+    sought_from_.reset();
   }
   scans_.push_back(job);
   while (scans_.size() > params_.most_scans || job->made - scans_.front()->made > params_.window)
     scans_.pop_front();
   if (!is_due(*job)) return reply(StairsStep{{}, job->odom_epoch});
-  sought_ = job->made;
   searching_ = true;
   sought_from_ = job->scan->located.position;
   const Eigen::Vector3f eye = (job->scan->located * params_.eye).cast<float>();
