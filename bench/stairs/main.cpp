@@ -55,13 +55,12 @@ bool same(const Staircase& found, const Staircase& truth) {
 void run_case(const std::string& name, std::uint64_t seed, double noise, const Options& options, Row& row) {
   Random random = Random(seed).fork(7);
   scenes::Scene scene;
-  if (name == "false")
-    scene = scenes::not_stairs(seed, random);
+  if (const auto row_of = std::ranges::find(scenes::kRows, name); row_of != scenes::kRows.end())
+    scene = scenes::staircase(static_cast<scenes::Row>(row_of - scenes::kRows.begin()), random);
+  else if (const auto kind = std::ranges::find(scenes::kNotStairs, name); kind != scenes::kNotStairs.end())
+    scene = scenes::not_stairs(static_cast<std::size_t>(kind - scenes::kNotStairs.begin()), random);
   else
-    scene = scenes::staircase(name == "open"     ? scenes::Row::open
-                              : name == "walled" ? scenes::Row::walled
-                                                 : scenes::Row::down,
-                              random);
+    scene = scenes::not_stairs(seed, random);
   scenes::Sensing sensing{.sweeps = options.sweeps, .tilt = options.tilt * M_PI / 180.0};
   sensing.lidar.noise = noise;
   const scenes::Cloud cloud = scenes::sense(scene, sensing, random);
@@ -110,7 +109,10 @@ int main(int argc, char** argv) {
   app.add_option("--cases", options.cases, "a row and noise")->capture_default_str();
   app.add_option("--first", options.first, "seed")->capture_default_str();
   app.add_option("--noise", options.noise, "standard deviations of a range, m")->capture_default_str();
-  app.add_option("--rows", options.rows, "open, walled, down, false")->capture_default_str();
+  app.add_option(
+         "--rows", options.rows,
+         "open, walled, down, winding, clutter, half, door, grating, mirror; false, or one of its kinds")
+      ->capture_default_str();
   app.add_option("--tilt", options.tilt, "error of the attitude, degrees")->capture_default_str();
   app.add_option("--sweeps", options.sweeps, "in a cloud, at 10 Hz")->capture_default_str();
   app.add_flag("--each", options.each, "print each case");

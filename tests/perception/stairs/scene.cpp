@@ -17,6 +17,8 @@ double gaussian(Random& random) {
 struct Turned {
   Eigen::Matrix3d R_box_world;
   Eigen::Vector3d centre, half;
+  double passes;
+  bool mirror;
 };
 
 std::vector<Turned> turned(const std::vector<Solid>& solids) {
@@ -25,22 +27,46 @@ std::vector<Turned> turned(const std::vector<Solid>& solids) {
     const Eigen::Matrix3d R = (Eigen::AngleAxisd(s.yaw, Eigen::Vector3d::UnitZ()) *
                                Eigen::AngleAxisd(s.pitch, Eigen::Vector3d::UnitY()))
                                   .toRotationMatrix();
-    out.push_back({R.transpose(), s.centre, s.half});
+    out.push_back({R.transpose(), s.centre, s.half, s.passes, s.mirror});
   }
   return out;
 }
 
-double range(const Turned& box, const Eigen::Vector3d& eye, const Eigen::Vector3d& ray) {
+/// `axis`: of the box, across the face that is hit.
+double range(const Turned& box, const Eigen::Vector3d& eye, const Eigen::Vector3d& ray, int* axis = nullptr) {
   const Eigen::Vector3d from = box.R_box_world * (eye - box.centre), along = box.R_box_world * ray;
   double near = 0.0, far = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     const double step = std::abs(along[i]) < 1e-12 ? 1e-12 : along[i];
     double a = (-box.half[i] - from[i]) / step, b = (box.half[i] - from[i]) / step;
     if (a > b) std::swap(a, b);
+    if (a > near && axis != nullptr) *axis = i;
     near = std::max(near, a);
     far = std::min(far, b);
   }
   return near <= far && near > 0.0 ? near : std::numeric_limits<double>::infinity();
+}
+
+/// Distance at which a beam ends, m; infinity: nowhere.
+double ends(const std::vector<Turned>& solids, double floor, const Eigen::Vector3d& eye,
+            const Eigen::Vector3d& ray, Random& random, bool mirrored = false) {
+  constexpr double nowhere = std::numeric_limits<double>::infinity();
+  double hit = ray.z() < -1e-9 ? (floor - eye.z()) / ray.z() : nowhere;
+  if (!(hit > 0.0)) hit = nowhere;
+  const Turned* nearest = nullptr;
+  for (const Turned& solid : solids) {
+    if (mirrored && solid.mirror) continue;
+    const double at = range(solid, eye, ray);
+    if (at >= hit || (solid.passes > 0.0 && random.chance(solid.passes))) continue;
+    hit = at;
+    nearest = &solid;
+  }
+  if (nearest == nullptr || !nearest->mirror) return hit;
+  int axis = 0;
+  (void)range(*nearest, eye, ray, &axis);
+  const Eigen::Vector3d normal = nearest->R_box_world.row(axis).transpose();
+  const Eigen::Vector3d on = ray - 2.0 * ray.dot(normal) * normal;
+  return hit + ends(solids, floor, eye + hit * ray, on, random, true);
 }
 
 Solid turned_box(double x, double y, double z0, double length, double width, double height, double yaw) {
@@ -58,6 +84,49 @@ void add_ramp(Scene& scene, double slope, double length, double width, double la
        .pitch = -slope});
   const double top = length * std::sin(slope), end = length * std::cos(slope);
   add_box(scene, end, end + 3.0, lateral - width / 2, lateral + width / 2, 0.0, top);
+}
+
+/// What stands on steps: boxes, people, a pallet, stones.
+void add_clutter(Scene& scene, const Staircase& stairs, Random& random) {
+  const int things = 2 + static_cast<int>(random.below(4));
+  for (int n = 0; n < things; ++n) {
+    const int step = static_cast<int>(random.below(static_cast<std::uint64_t>(stairs.steps)));
+    const double x = (step + 0.5) * stairs.run, z = (step + 1) * stairs.rise;
+    const double y = random.uniform(-0.45, 0.45) * stairs.width, yaw = random.uniform(-0.6, 0.6);
+    switch (random.below(4)) {
+      case 0:
+        scene.solids.push_back(turned_box(x, y, z, 0.3, 0.4, random.uniform(0.2, 0.4), yaw));
+        break;
+      case 1:
+        scene.solids.push_back(turned_box(x, y, z, 0.3, 0.5, random.uniform(1.5, 1.9), yaw));
+        break;
+      case 2:  // Leans on the steps.
+        scene.solids.push_back({.centre = {x, y, z + 0.1},
+                                .half = {0.6, 0.2, 0.07},
+                                .pitch = -std::atan2(stairs.rise, stairs.run)});
+        break;
+      default:
+        for (int k = 0; k < 4; ++k) {
+          const double edge = random.uniform(0.05, 0.15);
+          scene.solids.push_back(turned_box(x + random.uniform(-0.3, 0.3), y + random.uniform(-0.3, 0.3),
+                                            z - 0.05, edge, edge, edge + 0.05, yaw + k));
+        }
+    }
+  }
+}
+
+/// Steps that turn, from the end of a straight flight: each is a box that later ones cover.
+void add_winding(Scene& scene, const Staircase& stairs, Random& random) {
+  const double turn = random.uniform(0.25, 0.5) * (random.chance(0.5) ? 1.0 : -1.0);
+  Eigen::Vector2d at(stairs.steps * stairs.run, 0.0);
+  double yaw = turn, height = stairs.steps * stairs.rise;
+  for (int k = 0; k < 4; ++k, yaw += turn) {
+    height += stairs.rise;
+    const Eigen::Vector2d ahead(std::cos(yaw), std::sin(yaw));
+    const Eigen::Vector2d middle = at + ahead * 0.75;
+    scene.solids.push_back(turned_box(middle.x(), middle.y(), 0.0, 1.5, stairs.width, height, yaw));
+    at += stairs.run * ahead;
+  }
 }
 
 }  // namespace
@@ -98,10 +167,7 @@ Cloud sense(const Scene& scene, const Sensing& sensing, Random& random) {
         const Eigen::Vector3d ray =
             gait * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
                                    std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-        double hit =
-            ray.z() < -1e-9 ? (scene.floor - eye.z()) / ray.z() : std::numeric_limits<double>::infinity();
-        if (!(hit > 0.0)) hit = std::numeric_limits<double>::infinity();
-        for (const Turned& solid : solids) hit = std::min(hit, range(solid, eye, ray));
+        const double hit = ends(solids, scene.floor, eye, ray, random);
         if (!(hit >= lidar.min_range && hit <= lidar.max_range)) continue;
         const Eigen::Vector3d world = eye + ray * (hit + lidar.noise * gaussian(random));
         const Eigen::Vector3f point = (tilt * (R_base_world * (world - base))).cast<float>();
@@ -126,9 +192,13 @@ Scene staircase(Row row, Random& random) {
   const double width = random.uniform(0.8, 2.0);
   const int steps = 4 + static_cast<int>(random.below(9));
   const double end = (steps - 1) * run, top = steps * rise;
-  for (int k = 0; k < steps; ++k)
-    add_box(scene, k * run, k + 1 == steps ? end + 4.0 : (k + 1) * run, -width / 2, width / 2, 0.0,
+  const double landing = row == Row::winding ? run : 4.0;
+  for (int k = 0; k < steps; ++k) {
+    const double low = row == Row::grating && k + 1 < steps ? (k + 1) * rise - 0.03 : 0.0;
+    add_box(scene, k * run, k + 1 == steps ? end + landing : (k + 1) * run, -width / 2, width / 2, low,
             (k + 1) * rise);
+    if (row == Row::grating && k + 1 < steps) scene.solids.back().passes = 0.5;
+  }
   scene.truth = Staircase{
       .foot = {0.0, 0.0, rise / 2}, .heading = 0.0, .rise = rise, .run = run, .width = width, .steps = steps};
   const double lateral = random.uniform(-0.3, 0.3) * width;
@@ -140,7 +210,21 @@ Scene staircase(Row row, Random& random) {
   }
   const double distance = random.uniform(1.0, 3.0);
   scene.start = {-distance, lateral, random.uniform(-0.5, 0.5)};
-  if (row == Row::open) return scene;
+  if (row == Row::clutter) add_clutter(scene, *scene.truth, random);
+  if (row == Row::winding) add_winding(scene, *scene.truth, random);
+  if (row == Row::half) add_box(scene, -0.6, -0.4, 0.0, 4.0, 0.0, 2.5);
+  if (row == Row::door) {
+    add_box(scene, -0.8, -0.7, 0.45, 5.0, 0.0, 2.6);
+    add_box(scene, -0.8, -0.7, -5.0, -0.45, 0.0, 2.6);
+    add_box(scene, -0.8, -0.7, -0.45, 0.45, 2.1, 2.6);
+  }
+  if (row == Row::mirror) {
+    const double side = (width / 2 + random.uniform(0.05, 0.5)) * (random.chance(0.5) ? 1.0 : -1.0);
+    add_box(scene, -4.0, end + 2.0, std::min(side, side + std::copysign(0.02, side)),
+            std::max(side, side + std::copysign(0.02, side)), 0.0, 3.0);
+    scene.solids.back().mirror = true;
+  }
+  if (row != Row::walled) return scene;
   const double begin = -random.uniform(0.0, 4.0), high = top + 2.6;
   add_box(scene, begin, end + 4.0, -width / 2 - 0.2, -width / 2, 0.0, high);
   add_box(scene, begin, end + 4.0, width / 2, width / 2 + 0.2, 0.0, high);

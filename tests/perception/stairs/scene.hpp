@@ -29,6 +29,8 @@ struct Lidar {
 struct Solid {
   Eigen::Vector3d centre{}, half{};  ///< m
   double yaw{}, pitch{};             ///< Radians; pitch > 0 lowers its +x end.
+  double passes{0.0};                ///< Share of the rays that go through it, as through a grating, [0, 1].
+  bool mirror{false};                ///< Rays go on from it, mirrored, and it is not seen itself.
 };
 
 /// A world and the way of a robot in it, in the world's frame.
@@ -59,7 +61,19 @@ Cloud sense(const Scene& scene, const Sensing& sensing, Random& random);
 /// The truth in the cloud's frame.
 Staircase seen_from(const Scene& scene, const Staircase& stairs);
 
-enum class Row { open, walled, down };
+enum class Row {
+  open,
+  walled,
+  down,
+  winding,  ///< Its upper steps turn; the truth is the straight part.
+  clutter,  ///< Boxes, people, pallets and rubble stand on it.
+  half,     ///< A wall hides half of its width.
+  door,     ///< Behind a door of 0.9 m.
+  grating,  ///< Treads without risers through which half of the rays pass.
+  mirror,   ///< Beside a wall that mirrors.
+};
+inline constexpr std::array kRows{"open", "walled", "down",    "winding", "clutter",
+                                  "half", "door",   "grating", "mirror"};
 /// A staircase that climbs along +x from the origin, and a robot before its foot or at its upper edge.
 Scene staircase(Row row, Random& random);
 /// What is no staircase: by `n`, one of kNotStairs kinds.
