@@ -483,11 +483,11 @@ void Agent::CommandComponent::seek_stairs(const std::shared_ptr<const Scan>& sca
        [this](const Result<StairsStep>& step) {
          if (!step || step->odom_epoch != frames_.odom_epoch()) return;
          const Pose3 T_map_odom = frames_.map_frame().T_map_odom;
-         for (const auto& [id, in_odom] : step->stairs) {
-           Staircase stairs = in_odom;
-           stairs.foot = T_map_odom * stairs.foot;
-           stairs.heading = wrap_angle(stairs.heading + T_map_odom.yaw());
-           if (const auto taken = context_.stairs->take(id, stairs, to_stamp(now())); !taken)
+         for (const std::uint64_t id : step->withdrawn) context_.stairs->withdraw(id);
+         for (StairsTracker::Tracked tracked : step->stairs) {
+           tracked.stairs.foot = T_map_odom * tracked.stairs.foot;
+           tracked.stairs.heading = wrap_angle(tracked.stairs.heading + T_map_odom.yaw());
+           if (const auto taken = context_.stairs->take(tracked, to_stamp(now())); !taken)
              context_.notifier->to_all(Severity::warning, "finding_refused", taken.reason(),
                                        "a staircase: " + taken.error().text);
          }

@@ -30,6 +30,7 @@ struct StairsJob {
 /// All confirmed staircases after a search, in the odometry frame; none between searches.
 struct StairsStep {
   std::vector<StairsTracker::Tracked> stairs{};
+  std::vector<std::uint64_t> withdrawn{};  ///< Those that are gone since the last search, by their id.
   std::uint32_t odom_epoch{};
 };
 using StairsService = Service<std::shared_ptr<const StairsJob>, StairsStep>;
@@ -68,6 +69,11 @@ class StairsPart : public Component {
 };
 
 /// The points of scans, odometry frame, the oldest first: without what moves, and without other robots.
-std::vector<Eigen::Vector3f> accumulated(std::span<const std::shared_ptr<const StairsJob>> scans);
+struct StairsCloud {
+  std::vector<Eigen::Vector3f> points{};
+  std::vector<perception::StairsRays> rays{};  ///< Views into `points`.
+};
+/// `eye`: of the lidar whose points have no origin of their own, base_link, m.
+StairsCloud accumulated(std::span<const std::shared_ptr<const StairsJob>> scans, const Eigen::Vector3d& eye);
 
 }  // namespace adit::agent

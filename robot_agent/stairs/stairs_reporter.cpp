@@ -2,6 +2,7 @@
 #include "robot_agent/stairs/stairs_reporter.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "core/findings/merge_stairs.hpp"
@@ -38,7 +39,16 @@ std::optional<findings::Key> StairsReporter::known(const Staircase& stairs) cons
   return std::nullopt;
 }
 
-Result<void> StairsReporter::take(std::uint64_t id, const Staircase& stairs, std::uint64_t stamp) {
+void StairsReporter::withdraw(std::uint64_t id) {
+  const auto named = keys_.find(id);
+  if (named == keys_.end()) return;
+  // Refused: it was dropped for lack of room meanwhile.
+  (void)findings_.withdraw(named->second.id);
+  keys_.erase(named);
+}
+
+Result<void> StairsReporter::take(const StairsTracker::Tracked& tracked_stairs, std::uint64_t stamp) {
+  const auto& [id, stairs, foot_known, top_known] = tracked_stairs;
   const auto& all = findings_.finding_store().all();
   auto named = keys_.find(id);
   const bool tracked = named != keys_.end() && all.contains(named->second);
@@ -61,8 +71,15 @@ Result<void> StairsReporter::take(std::uint64_t id, const Staircase& stairs, std
     // After a restart, fewer steps are in view than were seen before.
     const std::array<findings::SeenStairs, 2> both{{{key, *stored}, {key, stairs}}};
     better = with_least_sigma(findings::combined(both));
+    // Where it was seen that there are none, no older report adds any.
+    const Eigen::Vector3d step = step_of(better);
+    const int below =
+        static_cast<int>(std::lround((stairs.foot - better.foot).dot(step) / step.squaredNorm()));
+    const int above = better.steps - stairs.steps - below;
+    if (foot_known && below > 0) better.foot += below * step, better.steps -= below;
+    if (top_known && above > 0) better.steps -= above;
   }
-  if (stored && !differs(*stored, better)) return {};
+  if (stored && !all.at(key).withdrawn && !differs(*stored, better)) return {};
   findings::Finding changed = finding_of(better, stamp);
   changed.key = key;
   return findings_.update(std::move(changed));

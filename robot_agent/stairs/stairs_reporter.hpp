@@ -8,6 +8,7 @@
 #include "core/geometry/staircase.hpp"
 #include "core/time/time.hpp"
 #include "robot_agent/findings/finding_source.hpp"
+#include "robot_agent/stairs/stairs_tracker.hpp"
 
 namespace adit::agent {
 
@@ -20,11 +21,12 @@ class StairsReporter {
 
   StairsReporter(std::string robot, FindingSource& findings)
       : robot_(std::move(robot)), findings_(findings) {}
-  /// @param id      StairsTracker::Tracked::id.
-  /// @param stairs  Map frame.
-  /// @param stamp   The robot's clock, ns.
+  /// @param tracked  In the map frame.
+  /// @param stamp    The robot's clock, ns.
   /// Errors: as of FindingSource::report().
-  Result<void> take(std::uint64_t id, const Staircase& stairs, std::uint64_t stamp);
+  Result<void> take(const StairsTracker::Tracked& tracked, std::uint64_t stamp);
+  /// It is gone: its finding is withdrawn. An unknown id is ignored.
+  void withdraw(std::uint64_t id);
 
  private:
   /// The finding of the same flight.

@@ -95,7 +95,7 @@ int stairs(const StairsOptions& options) {
     }
     tracker.take(stairs_in(detector, window, T * eye), pose.position);
   }
-  for (const auto& [id, s] : tracker.confirmed()) print(s, options.json, "");
+  for (const auto& tracked : tracker.confirmed()) print(tracked.stairs, options.json, "");
   return 0;
 }
 

@@ -37,36 +37,60 @@ class StairsReporterTest : public ::testing::Test {
 };
 
 TEST_F(StairsReporterTest, ReportsOnce) {
-  for (int n = 0; n < 5; ++n) EXPECT_TRUE(reporter_.take(1, six_steps(), 1));
+  for (int n = 0; n < 5; ++n) EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
   ASSERT_EQ(stored().size(), 1U);
   EXPECT_EQ(stored()[0].steps, 6);
 }
 
 TEST_F(StairsReporterTest, ACorrectedMapMovesItAndMakesNoSecondOne) {
-  EXPECT_TRUE(reporter_.take(1, six_steps(), 1));
+  EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
   Staircase moved = six_steps();
   moved.foot.y() += 3.0;  // Farther than the width.
-  EXPECT_TRUE(reporter_.take(1, moved, 2));
+  EXPECT_TRUE(reporter_.take({1, moved}, 2));
   ASSERT_EQ(stored().size(), 1U);
   EXPECT_NEAR(stored()[0].foot.y(), 5.5, 1e-9);
 }
 
 TEST_F(StairsReporterTest, AfterARestartItRecognisesWhatItReported) {
-  EXPECT_TRUE(reporter_.take(1, six_steps(), 1));
+  EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
   StairsReporter again("r1", source_);
   Staircase part = six_steps();
   part.steps = 4;
-  EXPECT_TRUE(again.take(7, part, 2));
+  EXPECT_TRUE(again.take({7, part}, 2));
   ASSERT_EQ(stored().size(), 1U);
   EXPECT_EQ(stored()[0].steps, 6) << "fewer are in view";
 }
 
 TEST_F(StairsReporterTest, AnotherStaircaseIsAnotherFinding) {
-  EXPECT_TRUE(reporter_.take(1, six_steps(), 1));
+  EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
   Staircase other = six_steps();
   other.foot.y() += 3.0;
-  EXPECT_TRUE(reporter_.take(2, other, 2));
+  EXPECT_TRUE(reporter_.take({2, other}, 2));
   EXPECT_EQ(stored().size(), 2U);
+}
+
+TEST_F(StairsReporterTest, OneThatIsGoneIsWithdrawnAndComesBackWhenItIsSeenAgain) {
+  const auto withdrawn = [&] { return source_.finding_store().all().begin()->second.withdrawn; };
+  EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
+  ASSERT_EQ(stored().size(), 1U);
+  reporter_.withdraw(2);
+  (void)stored();
+  EXPECT_FALSE(withdrawn()) << "another one is gone";
+  reporter_.withdraw(1);
+  (void)stored();
+  EXPECT_TRUE(withdrawn());
+  EXPECT_TRUE(reporter_.take({3, six_steps()}, 2));
+  ASSERT_EQ(stored().size(), 1U);
+  EXPECT_FALSE(withdrawn());
+}
+
+TEST_F(StairsReporterTest, AStepThatWasRefutedIsTakenBackAlsoWhenItWasReported) {
+  EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
+  Staircase five = six_steps();
+  five.steps = 5;
+  EXPECT_TRUE(reporter_.take({.id = 1, .stairs = five, .top_known = true}, 2));
+  ASSERT_EQ(stored().size(), 1U);
+  EXPECT_EQ(stored()[0].steps, 5);
 }
 
 }  // namespace

@@ -32,6 +32,15 @@ TEST(StairsTracker, ConfirmsWhatItSawFromThreePlaces) {
   EXPECT_EQ(tracker.confirmed()[0].stairs.steps, 6);
 }
 
+TEST(StairsTracker, ConfirmsWhatItSawFromTwoPlacesThatAreFarApart) {
+  StairsTracker tracker;
+  EXPECT_EQ(take(tracker, flight(), 5.0), 0U);
+  EXPECT_EQ(take(tracker, flight(), 5.9), 0U) << "both clouds may have scans in common";
+  StairsTracker other;
+  EXPECT_EQ(take(other, flight(), 5.0), 0U);
+  EXPECT_EQ(take(other, flight(), 6.1), 1U);
+}
+
 TEST(StairsTracker, AStandingRobotConfirmsNothing) {
   StairsTracker tracker;
   for (int n = 0; n < 20; ++n) EXPECT_EQ(take(tracker, flight(), 5.0), 0U);
@@ -63,6 +72,76 @@ TEST(StairsTracker, RefinesButNeverBecomesCertain) {
   ASSERT_EQ(tracker.confirmed().size(), 1U);
   EXPECT_NEAR(tracker.confirmed()[0].stairs.rise, 0.2, 0.002);
   EXPECT_GE(tracker.confirmed()[0].stairs.sigma.rise, 0.002);
+}
+
+using Riser = perception::StairsCheck::Riser;
+
+/// A tracker that confirmed a flight of so many steps, from x = 4 to 5.
+StairsTracker confirmed_one(int steps = 6) {
+  StairsTracker tracker;
+  for (const double x : {4.0, 4.5, 5.0}) (void)take(tracker, flight(8.0, steps), x);
+  return tracker;
+}
+
+/// A cloud in which no staircase was found.
+void look(StairsTracker& tracker, const perception::StairsCheck& check, double x) {
+  StairsTracker::Checks checks;
+  for (const StairsTracker::Tracked& track : tracker.all()) checks[track.id] = check;
+  tracker.take({}, {x, 2.5, 0.0}, checks);
+}
+
+constexpr perception::StairsCheck kThrough{.through = 200, .on = 10};
+
+TEST(StairsTracker, AnEndThatIsLevelFromTwoPlacesIsNoStep) {
+  StairsTracker tracker = confirmed_one(7);
+  look(tracker, {.top = Riser::level}, 10.0);
+  EXPECT_EQ(tracker.confirmed()[0].stairs.steps, 7) << "one place may be wrong";
+  look(tracker, {.top = Riser::level}, 10.1);
+  EXPECT_EQ(tracker.confirmed()[0].stairs.steps, 7) << "as good as the same place";
+  look(tracker, {.top = Riser::level}, 10.4);
+  EXPECT_EQ(tracker.confirmed()[0].stairs.steps, 6);
+  EXPECT_TRUE(tracker.confirmed()[0].top_known);
+  EXPECT_FALSE(tracker.confirmed()[0].foot_known);
+  EXPECT_EQ(take(tracker, flight(8.0, 7), 10.8), 1U);
+  EXPECT_EQ(tracker.confirmed()[0].stairs.steps, 6) << "it stays away";
+}
+
+TEST(StairsTracker, ALowestStepThatIsLevelGoesAsWell) {
+  StairsTracker tracker = confirmed_one(7);
+  for (const double x : {6.0, 6.5}) look(tracker, {.foot = Riser::level}, x);
+  const StairsTracker::Tracked found = tracker.confirmed().at(0);
+  EXPECT_EQ(found.stairs.steps, 6);
+  EXPECT_NEAR(found.stairs.foot.x(), 8.3, 0.01);
+  EXPECT_NEAR(found.stairs.foot.z(), 0.3, 0.01);
+  EXPECT_TRUE(found.foot_known);
+}
+
+TEST(StairsTracker, AStepThatWasSeenAsOftenStays) {
+  StairsTracker tracker = confirmed_one(6);
+  for (const double x : {5.5, 6.0, 6.5}) look(tracker, {.top = Riser::there}, x);
+  for (const double x : {7.0, 7.5, 8.0}) look(tracker, {.top = Riser::level}, x);
+  EXPECT_EQ(tracker.confirmed()[0].stairs.steps, 6);
+}
+
+TEST(StairsTracker, IsGoneWhenRaysPassThroughFromThreePlaces) {
+  StairsTracker tracker = confirmed_one();
+  const auto id = tracker.confirmed()[0].id;
+  for (const double x : {5.5, 6.0, 6.1, 6.2}) look(tracker, kThrough, x);
+  EXPECT_TRUE(tracker.take_withdrawn().empty());
+  look(tracker, kThrough, 6.5);
+  EXPECT_EQ(tracker.take_withdrawn(), std::vector{id});
+  EXPECT_TRUE(tracker.confirmed().empty());
+  EXPECT_TRUE(tracker.take_withdrawn().empty()) << "once";
+}
+
+TEST(StairsTracker, IsNotGoneWhenItIsSeenMeanwhile) {
+  StairsTracker tracker = confirmed_one();
+  for (const double x : {5.5, 6.0}) look(tracker, kThrough, x);
+  EXPECT_EQ(take(tracker, flight(), 6.5), 1U);
+  for (const double x : {7.0, 7.5}) look(tracker, kThrough, x);
+  look(tracker, {.through = 50, .on = 50}, 8.0);  // Half of it shows.
+  for (const double x : {8.5, 9.0}) look(tracker, kThrough, x);
+  EXPECT_EQ(tracker.confirmed().size(), 1U);
 }
 
 TEST(StairsTracker, IsBounded) {
