@@ -53,6 +53,7 @@ class Content {
   const FindingDesk& desk() const { return desk_; }
   FindingBook& book() { return book_; }
   Marks& marks() { return marks_; }
+  const FindingBook& book() const { return book_; }
   const PieceReader& pieces() const { return pieces_; }
   FindingCounts finding_counts() const;
   const MapReceiver& maps() const { return map_.receiver(); }

@@ -8,6 +8,7 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
+#include "basestation/findings/stairs_report.hpp"
 #include "basestation/fleet/summary.hpp"
 #include "core/command/words.hpp"
 #include "core/wire/typed.hpp"
@@ -87,6 +88,8 @@ void Station::observe() {
     if (on_down) on_down();
   };
 }
+
+StairsReport Station::stairs() const { return stairs_report(content_.desk(), content_.book(), fleet_); }
 
 World Station::world() const {
   World world = world_of(fleet_, now());

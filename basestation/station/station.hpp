@@ -11,6 +11,7 @@
 #include "basestation/content/content.hpp"
 #include "basestation/fleet/presence.hpp"
 #include "basestation/map/map_view.hpp"
+#include "basestation/model/stairs.hpp"
 #include "basestation/model/world.hpp"
 #include "core/command/parse.hpp"
 
@@ -70,6 +71,8 @@ class Station {
   void look_at(const LookedAt& place) { content_.look_at(place); }
   /// Number of stored findings of all robots.
   std::size_t findings() const { return content_.desk().all().size(); }
+  /// The staircases of the map, computed from all findings.
+  StairsReport stairs() const;
   /// True after `down`, until `up`.
   bool closed() const { return !presence_.up(); }
 
