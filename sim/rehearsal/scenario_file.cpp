@@ -57,10 +57,11 @@ WorldSpec read_world(const Node& world, const std::string& file) {
     const auto size = static_cast<int>(world.integer("size", least, most, least));
     const auto seed =
         static_cast<std::uint64_t>(world.integer("seed", 0, kMaxSeed, sized && !tunnel ? 0 : 1));
-    out.boxes = !sized   ? generate_world(kind, seed).value().boxes
-                : tunnel ? generate_tunnel(size).boxes
-                         : generate_blocks(size, seed).boxes;
-    out.ceiling = 3.0;
+    GeneratedWorld made = !sized   ? generate_world(kind, seed).value()
+                          : tunnel ? generate_tunnel(size)
+                                   : generate_blocks(size, seed);
+    out.boxes = std::move(made.boxes);
+    out.ceiling = made.ceiling;
   }
   if (world.has("boxes")) {
     for (const Node& box : world.list("boxes")) {

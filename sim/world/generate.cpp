@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/time/random.hpp"
+#include "sim/world/flights.hpp"
 
 namespace adit::sim {
 namespace {
@@ -370,14 +371,22 @@ GeneratedWorld loop(Random random) {
   return b.take();
 }
 
+template <GeneratedWorld (*make)(Random)>
+GeneratedWorld drawn(std::uint64_t seed) {
+  return make(Random(seed));
+}
+GeneratedWorld flights(std::uint64_t seed) { return generate_flights(seed).world; }
+
 struct Kind {
   std::string_view name;
-  GeneratedWorld (*make)(Random);
+  GeneratedWorld (*make)(std::uint64_t seed);
 };
-constexpr std::array kKinds{Kind{"corridor", corridor}, Kind{"blocks", blocks}, Kind{"car_park", car_park},
-                            Kind{"cave", cave},         Kind{"stairs", stairs}, Kind{"dead_ends", dead_ends},
-                            Kind{"gaps", gaps},         Kind{"rubble", rubble}, Kind{"rooms", rooms},
-                            Kind{"maze", maze},         Kind{"tunnel", tunnel}, Kind{"loop", loop}};
+constexpr std::array kKinds{
+    Kind{"corridor", drawn<corridor>}, Kind{"blocks", drawn<blocks>}, Kind{"car_park", drawn<car_park>},
+    Kind{"cave", drawn<cave>},         Kind{"stairs", drawn<stairs>}, Kind{"dead_ends", drawn<dead_ends>},
+    Kind{"gaps", drawn<gaps>},         Kind{"rubble", drawn<rubble>}, Kind{"rooms", drawn<rooms>},
+    Kind{"maze", drawn<maze>},         Kind{"tunnel", drawn<tunnel>}, Kind{"loop", drawn<loop>},
+    Kind{"flights", flights}};
 
 constexpr auto kNames = [] {
   std::array<std::string_view, kKinds.size()> out{};
@@ -390,13 +399,13 @@ constexpr auto kNames = [] {
 std::span<const std::string_view> world_kinds() { return kNames; }
 
 std::span<const std::string_view> navigation_kinds() {
-  constexpr std::size_t for_perception = 2;  // The last ones.
-  return std::span(kNames).first(kNames.size() - for_perception);
+  constexpr std::size_t others = 3;  // The last ones.
+  return std::span(kNames).first(kNames.size() - others);
 }
 
 Result<GeneratedWorld> generate_world(std::string_view kind, std::uint64_t seed) {
   for (const Kind& each : kKinds)
-    if (each.name == kind) return each.make(Random(seed));
+    if (each.name == kind) return each.make(seed);
   return {Reason::bad_argument, "no world is called " + std::string(kind)};
 }
 

@@ -15,11 +15,13 @@ struct GeneratedWorld {
   std::vector<Box> boxes{};
   Eigen::Vector2d start{0.0, 0.0};  ///< Free for 1 m around.
   Eigen::Vector2d size{0.0, 0.0};   ///< Inner size, from (0, 0), m.
+  double ceiling{3.0};              ///< For make_box_world, m.
 };
 
 /// Every kind, in the order of the documentation (docs/rehearsal.md).
 std::span<const std::string_view> world_kinds();
-/// Those of them that try navigation: all but `tunnel` and `loop`, which try perception.
+/// Those of them that try navigation anywhere: all but `flights`, and `tunnel` and `loop`, which try
+/// perception.
 std::span<const std::string_view> navigation_kinds();
 
 /// The world of that kind; the same seed gives the same world on every machine. Reason::bad_argument for a
