@@ -150,7 +150,8 @@ GoalFinding GoalCheck::check(RoutePlanner& planner, const Eigen::Vector3d& from,
   found.length = route.length;
   found.unknown_length = route.unknown_length;
   if (route.status == RouteStatus::unreachable && !planner.map().has_blocked_places())
-    found.standing = Standing::not_connected;
+    found.standing = route.stairs ? Standing::over_stairs : Standing::not_connected;
+  found.stairs = found.standing == Standing::over_stairs ? route.stairs : std::nullopt;
   return found;
 }
 

@@ -13,6 +13,7 @@ struct GoalFinding {
   Standing standing{Standing::unseen};
   Eigen::Vector3d place{0, 0, 0};     ///< The goal, or the nearest valid place, m.
   std::optional<double> moved{};      ///< Distance from the goal to that place, m; nothing: it is the goal.
+  std::optional<Staircase> stairs{};  ///< Of `over_stairs`.
   double length{}, unknown_length{};  ///< Of the route there, and of its part through unknown space, m.
 };
 

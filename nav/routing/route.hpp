@@ -2,8 +2,11 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
+
+#include "core/geometry/staircase.hpp"
 
 namespace adit::nav {
 
@@ -24,6 +27,7 @@ enum class Standing : std::uint8_t {
   too_narrow,     ///< Obstacles on opposite sides leave no heading free.
   unseen,         ///< Part of the ground has not been seen.
   not_connected,  ///< No route leads there.
+  over_stairs,    ///< A known staircase leads there that the body does not climb, and no other route.
   forbidden,      ///< The robot's areas do not permit it.
 };
 /// Whether the body is known not to fit there.
@@ -42,6 +46,8 @@ struct Route {
   double cost{0};            ///< Length with the penalties of narrow and unknown places, m.
 
   Standing goal{Standing::standable};  ///< Of the goal, if it was checked.
+  /// Unreachable: a known staircase that leads towards the goal, and that the body does not climb.
+  std::optional<Staircase> stairs{};
 
   bool found() const { return status == RouteStatus::found; }
 };

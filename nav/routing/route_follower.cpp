@@ -327,6 +327,7 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
   } else {
     if (!unreachable_since_) unreachable_since_ = request.stamp_s;
     if (request.stamp_s - *unreachable_since_ >= kProof) step.state = RouteStep::State::unreachable;
+    if (route_.stairs) step.goal = Standing::over_stairs;
   }
   step.replanned = asked;
   return step;

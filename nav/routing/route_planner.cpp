@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "nav/routing/known_stairs.hpp"
+
 namespace adit::nav {
 namespace {
 
@@ -137,6 +139,13 @@ void RoutePlanner::finish_ends(Route& route, const Eigen::Vector3d& from, const 
   }
 }
 
+std::optional<Staircase> RoutePlanner::barred(double from, double to) const {
+  std::vector<Staircase> closed;
+  for (const Staircase& stairs : map_.stairs())
+    if (!builder_.climbs(stairs)) closed.push_back(stairs);
+  return between(closed, from, to);
+}
+
 Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Route route;
   const Eigen::Vector3d goal_place{to.x(), to.y(), goal_height(from, to)};
@@ -153,6 +162,7 @@ Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
     route.status = RouteStatus::unreachable;
   else
     route.status = search_.search(*start, *goal, route.points);
+  if (route.status == RouteStatus::unreachable) route.stairs = barred(from.z(), goal_place.z());
   if (!route.found()) return route;
   line_.shorten(route.points);
   line_.measure(route);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nav/routing/known_stairs.hpp"
+
 namespace adit::nav {
 namespace {
 
@@ -45,6 +47,7 @@ void SurfaceMap::clear() {
   queue_.clear();
   places_.clear();
   team_.clear();
+  stairs_.clear();
   extent_ = {};
   used_ = 0;
   last_ = -1;
@@ -55,6 +58,35 @@ void SurfaceMap::set_areas(const AreaSet& areas) {
   areas_ = areas;
   for (int i = 0; i < size(); ++i)
     if (tile(i).used) mark_dirty(i);
+}
+
+void SurfaceMap::mark_stairs(const Staircase& stairs) {
+  const Eigen::Vector2d middle = (stairs.foot + stairs.top()).head<2>() / 2;
+  const double reach = (length_of(stairs) + stairs.width) / 2 + kStairsApproach;
+  const int cells = route_cell(reach) + 1 + kTileHalo, ix = route_cell(middle.x()),
+            iy = route_cell(middle.y());
+  for (int ty = tile_of(iy - cells); ty <= tile_of(iy + cells); ++ty)
+    for (int tx = tile_of(ix - cells); tx <= tile_of(ix + cells); ++tx)
+      for (int i = first(tx, ty); i >= 0; i = tile(i).next) mark_dirty(i);
+}
+
+void SurfaceMap::set_stairs(std::span<const Staircase> stairs) {
+  constexpr double kLanding = 0.3;  // m: a floor is before the foot and behind the top.
+  stairs = stairs.first(std::min(stairs.size(), kMaxStairs));
+  const std::vector<Staircase> before = std::move(stairs_);
+  stairs_.clear();
+  for (const Staircase& each : stairs) {
+    const auto same =
+        std::ranges::find_if(before, [&](const Staircase& b) { return leads_the_same(b, each); });
+    stairs_.push_back(same == before.end() ? each : *same);
+    if (same != before.end()) continue;
+    visit_cells(each, kLanding, [&](int ix, int iy, const OnStairs& place) {
+      see_free(ix, iy, static_cast<float>(tread_height(each, place.along)), 0.0f, Seen::given);
+    });
+    mark_stairs(each);
+  }
+  for (const Staircase& old : before)
+    if (std::ranges::find(stairs_, old) == stairs_.end()) mark_stairs(old);
 }
 
 int SurfaceMap::first(int tx, int ty) const {

@@ -4,9 +4,11 @@
 #include <deque>
 #include <limits>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
+#include "core/geometry/staircase.hpp"
 #include "nav/areas/area_set.hpp"
 #include "nav/routing/route_params.hpp"
 #include "nav/routing/tile.hpp"
@@ -37,6 +39,8 @@ class SurfaceMap {
   /// `same`: heights at one place that differ by at most this belong to one ground, m. It must exceed the
   /// height error at which a scan may take a return for ground, and be less than the height of a robot.
   SurfaceMap(const RouteParams& params, float same) : params_(params), same_(same) {}
+
+  static constexpr std::size_t kMaxStairs = 32;
 
   /// Source of a ground height: interpolated between returns, measured by a return, given by a map, or the
   /// robot's own position.
@@ -72,6 +76,10 @@ class SurfaceMap {
   /// rebuilt.
   void set_areas(const AreaSet& areas);
   const AreaSet& areas() const { return areas_; }
+  /// Sets the staircases that are known, at most kMaxStairs, in the frame of the poses. Their steps become
+  /// known ground, seen or not; TileBuilder decides who may cross them.
+  void set_stairs(std::span<const Staircase> stairs);
+  const std::vector<Staircase>& stairs() const { return stairs_; }
 
   /// First tile at tile coordinates, or -1; the other floors follow by Tile::next.
   int first(int tx, int ty) const;
@@ -134,6 +142,7 @@ class SurfaceMap {
   /// with doubts.
   void mark_around(const Tile& tile, int ix, int iy, bool doubtful_only = false);
   void mark_place(const BlockedPlace& place);
+  void mark_stairs(const Staircase& stairs);
 
   RouteParams params_;
   float same_;
@@ -144,6 +153,7 @@ class SurfaceMap {
   std::vector<BlockedPlace> places_{};
   std::vector<TeamPlace> team_{};
   AreaSet areas_{};
+  std::vector<Staircase> stairs_{};
   Extent extent_{};
   int used_{0};
   std::uint16_t scan_{0};

@@ -7,6 +7,8 @@
 #include <functional>
 #include <limits>
 
+#include "nav/routing/known_stairs.hpp"
+
 namespace adit::nav {
 namespace {
 
@@ -67,6 +69,7 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       sure_[at] = cell.sure;
       all_sure_ = all_sure_ && cell.sure;
       solid_[at] = solid(cell);
+      tall_[at] = cell.blocked && cell.obstacle_height > kTall;
       has_obstacle_[at] = solid_[at];
       if (cell.blocked && !solid_[at]) doubtful_[at] = price_of(cell);
       if (solid_[at]) aside_[at] = {cell.aside_x, cell.aside_y};
@@ -80,6 +83,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   sure_.fill(false);
   all_sure_ = true;
   solid_.fill(false);
+  tall_.fill(false);
   doubtful_.fill(0);
   has_obstacle_.fill(false);
   aside_.fill({0, 0});
@@ -110,6 +114,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
       if (other >= 0)
         gather_tile(map.tile(other), tile.z, kTileHalo + dx * kTileSide, kTileHalo + dy * kTileSide);
     }
+  for (const Staircase& stairs : map.stairs()) lay_stairs(stairs, tile);
   for (const BlockedPlace& p : map.blocked_places()) {
     if (!p.active || std::abs(p.z - tile.z) > kFloorSeparation) continue;
     const double cx = p.x / kRouteCell - (tile.tx * kTileSide - kTileHalo);
@@ -120,6 +125,39 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
         if (std::hypot(x + 0.5 - cx, y + 0.5 - cy) <= r) solid_[in_window(x, y)] = true;
   }
   if (!map.areas().empty()) forbid(map.areas(), tile);
+}
+
+void TileBuilder::lay_stairs(const Staircase& stairs, const Tile& tile) {
+  constexpr float kSame = 0.5f;  // m: ground at other heights is above or below the staircase.
+  const bool climbable = climbs(stairs);
+  visit_cells(stairs, climbable ? kRouteCell : 0.0, [&](int ix, int iy, const OnStairs& place) {
+    const int x = ix - (tile.tx * kTileSide - kTileHalo), y = iy - (tile.ty * kTileSide - kTileHalo);
+    if (x < 0 || y < 0 || x >= kWindow || y >= kWindow) return;
+    const std::size_t at = in_window(x, y);
+    const auto z = static_cast<float>(tread_height(stairs, place.along));
+    if (std::abs(z - tile.z) > 2 * kFloorSeparation || std::abs(z - seen_height_[at]) > kSame) return;
+    if (!climbable) {
+      solid_[at] = true;
+    } else if (!tall_[at]) {
+      known_[at] = sure_[at] = true;
+      height_[at] = seen_height_[at] = z;
+      solid_[at] = has_obstacle_[at] = false;
+      doubtful_[at] = 0;
+    }
+  });
+}
+
+// On a staircase and before its ends a place costs the more the farther it is from the axis.
+void TileBuilder::price_aside(const Staircase& stairs, Tile& tile) const {
+  constexpr double kAtSide = 6.0;  // Of a metre along a side, beside its length.
+  if (!climbs(stairs)) return;
+  visit_cells(stairs, kStairsApproach, [&](int ix, int iy, const OnStairs& place) {
+    if (tile_of(ix) != tile.tx || tile_of(iy) != tile.ty) return;
+    const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
+    const double z = tread_height(stairs, place.along), part = 2 * place.across / stairs.width;
+    if (tile.cost[c] == 0 || std::abs(double{tile.cell_z(static_cast<int>(c))} - z) > kRouteCell * 5) return;
+    tile.cost[c] = static_cast<std::uint8_t>(std::min(255.0, tile.cost[c] * (1.0 + kAtSide * part * part)));
+  });
 }
 
 // Forbidden ground, and what is nearer to it than robots may come, is an obstacle. The clearance counts from
@@ -410,6 +448,7 @@ void TileBuilder::build(SurfaceMap& map, int index) {
   find_steps();
   const std::array<std::uint8_t, kTileArea> before = tile.cost;
   measure(tile);
+  for (const Staircase& stairs : map.stairs()) price_aside(stairs, tile);
   // Most updates of a tile change no cost: its distances stay valid, except for heights.
   const bool same = tile.built && before == tile.cost;
   open_sides(tile);

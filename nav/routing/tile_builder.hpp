@@ -15,6 +15,9 @@ namespace adit::nav {
 ///
 /// From afar the error of the attitude makes steps where there are none: steps and low obstacles that were
 /// only seen from there do not block, but cost RouteParams::doubtful_cost, until they are seen from near.
+///
+/// A staircase that is known (SurfaceMap::stairs()) is ground for a body that climbs it, as its steps are and
+/// whatever its risers looked like, and cheapest along its axis. It is closed for other bodies.
 class TileBuilder {
  public:
   TileBuilder(const Platform& platform, const RouteParams& params);
@@ -22,6 +25,11 @@ class TileBuilder {
   /// Whether a cell holds an obstacle for certain.
   static bool solid(const GroundCell& cell) {
     return cell.blocked && (cell.sure || cell.obstacle_height > kTall);
+  }
+  /// Whether the body climbs a staircase.
+  bool climbs(const Staircase& stairs) const {
+    constexpr double kRounding = 5e-4;  // m
+    return climbs_stairs_ && stairs.rise <= limits_.step + kRounding;
   }
   /// Maximum height difference between two neighbouring cells, m: a larger one is a step.
   float most_rise(const GroundCell& a, const GroundCell& b) const {
@@ -60,6 +68,8 @@ class TileBuilder {
   void gather(const SurfaceMap& map, const Tile& tile);
   void gather_tile(const Tile& from, float z, int ox, int oy);
   void forbid(const AreaSet& areas, const Tile& tile);
+  void lay_stairs(const Staircase& stairs, const Tile& tile);
+  void price_aside(const Staircase& stairs, Tile& tile) const;
   bool is_foot(std::size_t cell) const;
   void find_steps();
   void find_steep(std::size_t from, std::size_t stride, int cells);
@@ -86,7 +96,7 @@ class TileBuilder {
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // By squared clearance in cells.
   // NaN: unknown. `seen_height_` has those, too, that prove nothing.
   std::array<float, kWindow * kWindow> height_{}, seen_height_{};
-  std::array<bool, kWindow * kWindow> known_{}, sure_{}, has_obstacle_{}, solid_{};
+  std::array<bool, kWindow * kWindow> known_{}, sure_{}, has_obstacle_{}, solid_{}, tall_{};
   std::array<std::uint8_t, kWindow * kWindow> doubtful_{};  // Cost of what only seems to block; 0: nothing.
   bool all_sure_{true};                                     // All known cells of the window are.
   std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // Position of obstacles, kAsideUnit.

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Routes over staircases that the robot knows.
+#include "nav/routing/known_stairs.hpp"
+
+#include <gtest/gtest.h>
+
+#include "nav/routing/route_planner.hpp"
+#include "tests/nav/box_world.hpp"
+#include "tests/nav/route_world.hpp"
+
+namespace adit::nav::test {
+namespace {
+
+/// Nine steps of 0.16 m along x from (5, 2), 1.4 m wide, between two floors with walls around them.
+Staircase nine_steps() {
+  Staircase stairs;
+  stairs.foot = {5.0, 2.0, 0.08};
+  stairs.rise = 0.16;
+  stairs.run = 0.3;
+  stairs.width = 1.4;
+  stairs.steps = 9;
+  return stairs;
+}
+constexpr double kUpper = 9 * 0.16;
+
+/// What scans showed: the floors and their walls, and nothing between x = 4.9 and `seen_again`.
+void show_floors(RoutePlanner& planner, double seen_again = 7.6) {
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 110; ++x) {
+      const double at = (x + 0.5) * 0.1;
+      const bool beside = at > 4.9 && at < 7.6 && (y < 13 || y >= 27);
+      if (y % 39 == 0 || x % 109 == 0 || beside)
+        planner.set_obstacle(middle(x, y, at < 5 ? 0.0 : kUpper), 2.5);
+      else if (at < 4.9 || at > seen_again)
+        planner.set_ground(middle(x, y, at < 5 ? 0.0 : kUpper));
+    }
+  planner.finish();
+}
+
+RouteParams seen_only() {
+  RouteParams params;
+  params.through_unknown = false;
+  return params;
+}
+
+TEST(KnownStairs, ATreadIsAsHighAsItsStep) {
+  const Staircase stairs = nine_steps();
+  EXPECT_NEAR(tread_height(stairs, -0.1), 0.0, 1e-9);
+  EXPECT_NEAR(tread_height(stairs, 0.1), 0.16, 1e-9);
+  EXPECT_NEAR(tread_height(stairs, 2.39), 8 * 0.16, 1e-9);
+  EXPECT_NEAR(tread_height(stairs, 3.0), kUpper, 1e-9);
+}
+
+TEST(KnownStairs, ALeggedRobotCrossesStepsThatItHasNotSeen) {
+  RoutePlanner planner(legged(), seen_only());
+  show_floors(planner);
+  EXPECT_FALSE(planner.plan({1, 2, 0}, {9.5, 2, kUpper}).found());
+  planner.set_stairs(std::vector{nine_steps()});
+  for (const bool up : {true, false}) {
+    const Eigen::Vector3d below{1, 1, 0}, above{9.5, 3.3, kUpper};
+    const Route route = up ? planner.plan(below, above) : planner.plan(above, below);
+    ASSERT_TRUE(route.found()) << (up ? "up" : "down");
+    EXPECT_EQ(route.unknown_length, 0.0);
+  }
+}
+
+TEST(KnownStairs, ARouteKeepsToTheAxis) {
+  Staircase wide = nine_steps();
+  wide.width = 3.6;
+  RoutePlanner planner(legged(), seen_only());
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 110; ++x) {
+      const double at = (x + 0.5) * 0.1;
+      const Eigen::Vector3d place = middle(x, y, tread_height(wide, at - 5.0));
+      if (y % 39 == 0 || x % 109 == 0)
+        planner.set_obstacle(place, 2.5);
+      else
+        planner.set_ground(place);
+    }
+  planner.finish();
+  const auto off_axis = [&] {
+    const Route route = planner.plan({3.0, 0.8, 0}, {9.0, 0.8, kUpper});
+    EXPECT_TRUE(route.found());
+    double most = 0.0;
+    for (std::size_t i = 0; i + 1 < route.points.size(); ++i)
+      for (double t = 0; t <= 1; t += 0.02) {
+        const Eigen::Vector3d at = route.points[i] + t * (route.points[i + 1] - route.points[i]);
+        if (at.x() > 5.3 && at.x() < 7.1) most = std::max(most, std::abs(at.y() - 2.0));
+      }
+    return most;
+  };
+  EXPECT_GT(off_axis(), 0.9);
+  planner.set_stairs(std::vector{wide});
+  EXPECT_LT(off_axis(), 0.4);
+}
+
+TEST(KnownStairs, RisersThatLookedLikeObstaclesAreNone) {
+  RoutePlanner planner(legged(), seen_only());
+  show_floors(planner);
+  const Staircase stairs = nine_steps();
+  for (int n = 0; n < stairs.steps; ++n)
+    for (int y = 13; y < 27; ++y) planner.set_obstacle(middle(50 + 3 * n, y, n * stairs.rise), 0.3);
+  planner.set_stairs(std::vector{stairs});
+  EXPECT_TRUE(planner.plan({1, 2, 0}, {9.5, 2, kUpper}).found());
+  // What stands on them is one.
+  for (int y = 13; y < 27; ++y) planner.set_obstacle(middle(60, y, tread_height(stairs, 1.05)), 0.8);
+  EXPECT_FALSE(planner.plan({1, 2, 0}, {9.5, 2, kUpper}).found());
+}
+
+TEST(KnownStairs, WheelsDoNotTakeThemAndTheReasonNamesThem) {
+  RoutePlanner planner(wheeled());
+  show_floors(planner);
+  EXPECT_TRUE(planner.plan({1, 2, 0}, {9.5, 2, kUpper}).found()) << "through what was not seen";
+  planner.set_stairs(std::vector{nine_steps()});
+  const Route route = planner.plan({1, 2, 0}, {9.5, 2, kUpper});
+  EXPECT_EQ(route.status, RouteStatus::unreachable);
+  ASSERT_TRUE(route.stairs);
+  EXPECT_EQ(*route.stairs, nine_steps());
+  planner.set_stairs({});
+  EXPECT_TRUE(planner.map().stairs().empty());
+}
+
+TEST(KnownStairs, LegsDoNotTakeStepsAboveTheirs) {
+  Platform low = legged();
+  low.step = 0.15;
+  RoutePlanner planner(low);
+  show_floors(planner);
+  planner.set_stairs(std::vector{nine_steps()});
+  const Route route = planner.plan({1, 2, 0}, {9.5, 2, kUpper});
+  EXPECT_EQ(route.status, RouteStatus::unreachable);
+  EXPECT_TRUE(route.stairs);
+}
+
+TEST(KnownStairs, TheReasonNamesOnlyWhatLeadsTowardsTheGoal) {
+  const std::vector<Staircase> stairs{nine_steps()};
+  EXPECT_TRUE(between(stairs, 0.0, kUpper));
+  EXPECT_TRUE(between(stairs, 0.0, 4.8)) << "the first of several flights";
+  EXPECT_TRUE(between(stairs, kUpper, 0.0));
+  EXPECT_FALSE(between(stairs, 0.0, 0.0));
+  EXPECT_FALSE(between(stairs, 0.0, -3.0));
+  EXPECT_FALSE(between(stairs, 4.0, 8.0));
+}
+
+}  // namespace
+}  // namespace adit::nav::test
