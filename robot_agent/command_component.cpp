@@ -48,7 +48,8 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
       context_(context),
       frames_(params.start, params.platform, params.start_height),
       router_(command, log(), params_.platform, frames_, context.router.get(),
-              {[this] { return navigation_.route_areas(); }, [this] { return team(now()); }}),
+              {[this] { return navigation_.route_areas(); }, [this] { return team(now()); },
+               [this] { return known_stairs(); }}),
       navigation_(navigation_params(params), command, log(), frames_, context.planner, context.router.get(),
                   navigation_outputs()),
       mux_(navigation_),
@@ -198,6 +199,7 @@ void Agent::CommandComponent::located(std::shared_ptr<Scan> scan, const LidarSca
     add_to_map(scan);
     seek_stairs(scan);
   }
+  navigation_.set_stairs(known_stairs());
   navigation_.add_scan(std::move(scan), lidar.received, now(), team(now()));
 }
 
@@ -492,6 +494,17 @@ void Agent::CommandComponent::seek_stairs(const std::shared_ptr<const Scan>& sca
                                        "a staircase: " + taken.error().text);
          }
        });
+}
+
+std::vector<Staircase> Agent::CommandComponent::known_stairs() const {
+  if (!context_.stairs || !frames_.initialised()) return {};
+  const Pose3 T_odom_map = frames_.map_frame().T_map_odom.inverse();
+  std::vector<Staircase> out = context_.stairs->all();
+  for (Staircase& stairs : out) {
+    stairs.foot = T_odom_map * stairs.foot;
+    stairs.heading = wrap_angle(stairs.heading + T_odom_map.yaw());
+  }
+  return out;
 }
 
 void Agent::CommandComponent::send_content() {

@@ -134,6 +134,8 @@ class Agent::CommandComponent : public Component {
   void add_to_map(const std::shared_ptr<const Scan>& scan);
   /// Offers every second scan to the search for staircases, and reports those that it finds.
   void seek_stairs(const std::shared_ptr<const Scan>& scan);
+  /// Those that this robot found, odometry frame.
+  std::vector<Staircase> known_stairs() const;
   /// Sends findings and maps to the stations, or its map to carriers, as the link allows.
   void send_content();
   /// Sends this robot's state to the other robots, when the link allows.

@@ -51,6 +51,8 @@ constexpr std::array kRows{
     Row{Reason::goal_unseen, "goal_unseen", "the ground at the goal was not seen yet"},
     Row{Reason::goal_not_connected, "goal_not_connected",
         "no route leads to the goal, not even through unknown space"},
+    Row{Reason::goal_over_stairs, "goal_over_stairs",
+        "only stairs lead to the goal, which this robot does not climb"},
     Row{Reason::unknown_budget, "unknown_budget",
         "the metres towards the unseen goal are used up; go on with: mode R waypoint"},
     Row{Reason::stuck, "stuck", "no progress towards the goal"},

@@ -77,6 +77,7 @@ enum class Reason : std::uint16_t {
   localisation_lost = 249,  ///< The odometry does not know where the robot is.
   type_differs = 250,       ///< A topic has another type on the other side.
   two_sources = 251,        ///< Two participants write what one driver should.
+  goal_over_stairs = 252,   ///< Only stairs lead there, which the robot does not climb.
 
   // Input that was typed or sent.
   bad_argument = 301,

@@ -9,8 +9,8 @@ namespace adit::agent {
 
 /// The judgement of the goal of a `goto` when it arrives, from the robot's map.
 struct GoalReport {
-  /// A reason from goal_occupied to goal_not_connected refuses the goal; goal_unseen does not; none: the
-  /// robot can stand there.
+  /// A reason from goal_occupied to goal_not_connected, or goal_over_stairs, refuses the goal; goal_unseen
+  /// does not; none: the robot can stand there.
   Reason reason{Reason::none};
   std::string text{};
   Eigen::Vector3d place{0, 0,

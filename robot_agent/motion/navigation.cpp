@@ -318,6 +318,7 @@ void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now, st
   job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
   job->areas = route_areas();
+  job->stairs = stairs_;
   job->made = now;
   routing_ = true;
   call(router_->step, job, {.deadline = kAnswerDeadline},

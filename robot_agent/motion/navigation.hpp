@@ -69,6 +69,8 @@ class Navigation : public Component, public NavigationInput {
   }
   /// The areas in the odometry frame, for the router.
   RouteAreas route_areas() const { return {fence_.all(), fence_.routable()}; }
+  /// Sets the known staircases, odometry frame, for the router.
+  void set_stairs(std::vector<Staircase> stairs) { stairs_ = std::move(stairs); }
   /// Whether the body is so far on forbidden ground that it does not come back by itself.
   bool is_far_out() const { return fence_.is_far_out(); }
   /// `team`: the other robots, for the route map.
@@ -135,6 +137,7 @@ class Navigation : public Component, public NavigationInput {
   std::shared_ptr<Detection> detection_;  // Used by one job at a time.
   std::uint32_t scan_epoch_{};            // Rises when the scans before are discarded.
   nav::AreaSet areas_{};                  // Map frame.
+  std::vector<Staircase> stairs_{};       // Odometry frame.
   double place_sigma_{};
   Fence fence_;
 

@@ -33,7 +33,9 @@ struct Router::Maps {
   nav::RouteStep step(const RouteJob& job, double stamp) {
     nav::RouteStep step = route_follower.step(
         planner, {job.place, *job.goal, job.generation, job.pass, job.ask, job.blocked_ahead, stamp});
+    const bool over_stairs = step.goal == nav::Standing::over_stairs;
     step.goal = goals.stand(planner, *job.goal, job.place.z());
+    if (over_stairs && !nav::is_refused(step.goal)) step.goal = nav::Standing::over_stairs;
     // From afar the map may show what was there a while ago, and a person who passes is no reason to stop.
     const bool near = (*job.goal - job.place).head<2>().norm() < kJudged;
     if (!near || !nav::is_refused(step.goal)) {
@@ -46,15 +48,19 @@ struct Router::Maps {
     return step;
   }
 
-  void enter(std::uint32_t epoch, const RouteAreas& now) {
+  void enter(const RouteContext& context) {
+    const RouteAreas& now = context.areas;
+    const std::uint32_t epoch = context.odom_epoch;
     planner.map().set_areas(now.binding);
     goals.set_areas(now.all);
     areas = now.all;
-    if (std::exchange(odom_epoch, epoch) == epoch) return;
-    refused_since.reset();
-    planner.clear();
-    route_follower.clear();
-    explorer.clear();
+    if (std::exchange(odom_epoch, epoch) != epoch) {
+      refused_since.reset();
+      planner.clear();
+      route_follower.clear();
+      explorer.clear();
+    }
+    planner.set_stairs(context.stairs);
   }
 };
 
@@ -69,7 +75,7 @@ void Router::serve(Service<Query, Answer>& service, const char* name, Work work)
     compute(
         {.name = name, .modelled = kModelled, .lane = "maps"},
         [query, work, maps = maps_] {
-          maps->enter(query.odom_epoch, query.areas);
+          maps->enter(query);
           return work(*maps, query);
         },
         reply);
@@ -109,7 +115,7 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
   compute(
       {.name = "route step", .modelled = kModelled, .lane = "maps"},
       [job, takes, maps = maps_]() -> nav::RouteStep {
-        maps->enter(job->odom_epoch, job->areas);
+        maps->enter(*job);
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) {
           const auto scan = without_team(job->scan, job->team);
@@ -141,17 +147,28 @@ Reason reason_of(nav::Standing standing) {
       return Reason::goal_unseen;
     case nav::Standing::not_connected:
       return Reason::goal_not_connected;
+    case nav::Standing::over_stairs:
+      return Reason::goal_over_stairs;
     case nav::Standing::forbidden:
       return Reason::outside_area;
   }
   return Reason::none;
 }
 
+std::string stairs_in_the_way(const Staircase& stairs, const Frames& frames) {
+  const Eigen::Vector3d foot = frames.to_map(stairs.foot);
+  char text[120] = "";
+  std::snprintf(text, sizeof text, ": %d steps of %.2f m, whose foot is at %.1f %.1f", stairs.steps,
+                stairs.rise, foot.x(), foot.y());
+  return std::string(describe(Reason::goal_over_stairs)) + text;
+}
+
 GoalReport goal_report(const nav::GoalFinding& found, const Eigen::Vector3d& goal, const Frames& frames) {
   GoalReport report{reason_of(found.standing), {}, goal};
   char text[160] = "";
   if (nav::is_refused(found.standing)) {
-    report.text = std::string(describe(report.reason));
+    report.text =
+        found.stairs ? stairs_in_the_way(*found.stairs, frames) : std::string(describe(report.reason));
     return report;
   }
   if (found.moved) {
@@ -174,6 +191,7 @@ Result<PlannedRoute> planned_route(const nav::Route& route, const Frames& frames
     case nav::RouteStatus::found:
       break;
     case nav::RouteStatus::unreachable:
+      if (route.stairs) return {Reason::goal_over_stairs, stairs_in_the_way(*route.stairs, frames)};
       return {Reason::goal_unreachable, "no way leads there, not even through what was not seen yet"};
     case nav::RouteStatus::start_blocked:
       return {Reason::goal_unreachable, "the robot stands where nothing around it is passable"};

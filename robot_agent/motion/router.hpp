@@ -25,10 +25,11 @@ struct RouteAreas {
   nav::AreaSet binding{};  ///< For routes.
 };
 
-/// The frame of a query, and the areas that bind the robot there.
+/// The frame of a query, and what is known there beside scans.
 struct RouteContext {
   std::uint32_t odom_epoch{};  ///< Epoch of the odometry frame; maps of another epoch are discarded.
   RouteAreas areas{};
+  std::vector<Staircase> stairs{};  ///< Those that the robot knows, odometry frame.
 };
 
 /// A scan for the map of the global planner, which uses some of them, and a request for the next step of the
@@ -105,6 +106,9 @@ class Router : public Component {
 
 /// Returns the reason to refuse a goal for, or goal_unseen; none where the body can stand.
 Reason reason_of(nav::Standing standing);
+
+/// Says which staircase (odometry frame) leads to a goal, for a robot that does not climb it.
+std::string stairs_in_the_way(const Staircase& stairs, const Frames& frames);
 
 /// Describes what was found about a goal (map frame, m) to its operator.
 GoalReport goal_report(const nav::GoalFinding& found, const Eigen::Vector3d& goal, const Frames& frames);

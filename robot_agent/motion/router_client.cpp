@@ -32,6 +32,7 @@ template <class Query, class Answer, class DoneFn>
 void RouterClient::ask(const Service<Query, Answer>& service, Query query, Duration deadline, DoneFn done) {
   query.odom_epoch = frames_.odom_epoch();
   query.areas = inputs_.areas();
+  if (inputs_.stairs) query.stairs = inputs_.stairs();
   call(service, query, {.deadline = deadline},
        [this, epoch = query.odom_epoch, done = std::move(done)](const Result<Answer>& answer) {
          done(answer, epoch == frames_.odom_epoch());

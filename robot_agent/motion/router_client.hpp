@@ -19,8 +19,9 @@ namespace adit::agent {
 class RouterClient : public Component {
  public:
   struct Inputs {
-    std::function<RouteAreas()> areas{};             ///< Odometry frame.
-    std::function<std::vector<TeamRobot>()> team{};  ///< The other robots, odometry frame.
+    std::function<RouteAreas()> areas{};               ///< Odometry frame.
+    std::function<std::vector<TeamRobot>()> team{};    ///< The other robots, odometry frame.
+    std::function<std::vector<Staircase>()> stairs{};  ///< The known staircases, odometry frame.
   };
   template <class T>
   using Done = std::function<void(const Result<T>&)>;

@@ -47,6 +47,15 @@ void StairsReporter::withdraw(std::uint64_t id) {
   keys_.erase(named);
 }
 
+std::vector<Staircase> StairsReporter::all() const {
+  std::vector<Staircase> out;
+  for (const auto& [key, finding] : findings_.finding_store().all()) {
+    if (key.robot != robot_ || finding.kind != findings::kStairs || finding.withdrawn) continue;
+    if (const auto stored = findings::stairs_of(finding)) out.push_back(*stored);
+  }
+  return out;
+}
+
 Result<void> StairsReporter::take(const StairsTracker::Tracked& tracked_stairs, std::uint64_t stamp) {
   const auto& [id, stairs, foot_known, top_known] = tracked_stairs;
   const auto& all = findings_.finding_store().all();

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/geometry/staircase.hpp"
 #include "core/time/time.hpp"
@@ -27,6 +28,8 @@ class StairsReporter {
   Result<void> take(const StairsTracker::Tracked& tracked, std::uint64_t stamp);
   /// It is gone: its finding is withdrawn. An unknown id is ignored.
   void withdraw(std::uint64_t id);
+  /// All that this robot reported and has not withdrawn, in the order of their ids; map frame.
+  std::vector<Staircase> all() const;
 
  private:
   /// The finding of the same flight.

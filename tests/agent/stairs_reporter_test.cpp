@@ -42,6 +42,18 @@ TEST_F(StairsReporterTest, ReportsOnce) {
   EXPECT_EQ(stored()[0].steps, 6);
 }
 
+TEST_F(StairsReporterTest, NamesAllThatItReportedAndHasNotWithdrawn) {
+  EXPECT_TRUE(reporter_.all().empty());
+  Staircase upper = six_steps();
+  upper.foot.z() += 3.0;
+  EXPECT_TRUE(reporter_.take(1, six_steps(), 1));
+  EXPECT_TRUE(reporter_.take(2, upper, 1));
+  ASSERT_EQ(reporter_.all().size(), 2U);
+  EXPECT_TRUE(source_.withdraw(source_.finding_store().all().begin()->first.id));
+  EXPECT_EQ(stored().size(), 2U);
+  EXPECT_EQ(reporter_.all().size(), 1U);
+}
+
 TEST_F(StairsReporterTest, ACorrectedMapMovesItAndMakesNoSecondOne) {
   EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
   Staircase moved = six_steps();

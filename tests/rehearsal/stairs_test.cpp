@@ -179,5 +179,16 @@ INSTANTIATE_TEST_SUITE_P(Stairs, WorldsWithoutStaircases,
                          ::testing::Values("cave", "rubble", "maze", "rooms"),
                          [](const auto& kind) { return std::string(kind.param); });
 
+TEST(StairsRun, LegsClimbThreeFlights) {
+  const Scenario scenario = load_shipped("stairs_flights.yaml");
+  RunParams params;
+  params.make_agent = *make_agent_factory("");
+  params.seed = 1;
+  params.ended = once_decided();
+  auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().text;
+  expect_ok(outcome->report);
+}
+
 }  // namespace
 }  // namespace adit::sim
