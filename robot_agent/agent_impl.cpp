@@ -2,6 +2,7 @@
 #include "robot_agent/agent_impl.hpp"
 
 #include "core/config/search.hpp"
+#include "core/store/crc32c.hpp"
 #include "core/time/random.hpp"
 #include "core/wire/component_io.hpp"
 #include "robot_agent/motion/sensor_readers.hpp"
@@ -157,6 +158,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
 
   e.findings =
       std::make_unique<FindingSource>(FindingParams{.robot = params.name,
+                                                    .owner = params.id,
                                                     .max_findings = params.findings,
                                                     .seed = Random(params.seed).fork(kFindingsSalt).next()},
                                       params.disk, strand, disk_strand, findings_outputs());
@@ -299,6 +301,7 @@ void Agent::Impl::open_map() {
         });
   e.map = std::make_unique<MapKeeper>(MapKeeperParams{.robot = params.name,
                                                       .seed = Random(params.seed).fork(kMapSalt).next(),
+                                                      .owner = crc32c(params.id),
                                                       .origin = params.platform.lidar_origin()},
                                       std::move(disk));
   const LoadedMap loaded = e.map->load();
@@ -337,7 +340,17 @@ FindingSource::Outputs Agent::Impl::findings_outputs() {
           [notify](bool failing, const std::string& text) {
             notify(failing ? Severity::error : Severity::info, failing ? "store_failing" : "store_works",
                    text);
-          }};
+          },
+          [this](const std::array<double, 3>& place) { return anchor_of(place); }};
+}
+
+std::optional<findings::Anchor> Agent::Impl::anchor_of(const std::array<double, 3>& place) const {
+  if (!context->map) return std::nullopt;
+  const auto in = context->map->place_in_submap({place[0], place[1], place[2]});
+  if (!in || in->offset.norm() > double{findings::Anchor::kFarthest}) return std::nullopt;
+  const Eigen::Vector3f offset = in->offset.cast<float>();
+  return findings::Anchor{
+      in->start, in->index, {offset.x(), offset.y(), offset.z()}, static_cast<float>(in->yaw)};
 }
 
 void Agent::Impl::with_findings(std::function<Result<void>(FindingSource& source, Time now)> work) {

@@ -21,7 +21,7 @@ constexpr std::size_t kMaxBytes = std::size_t{32} << 20;
 
 /// A finding in the file.
 struct StoredJudgement {
-  std::string robot{}, id{};
+  std::string robot{}, id{}, owner{};  ///< `owner` empty: unknown.
   FindingBook::Judgement judgement{};
 };
 
@@ -29,6 +29,7 @@ template <class Io>
 void fields(Io& io, Of<Io, StoredJudgement>& row) {
   io.field("robot", row.robot);
   io.field("id", row.id);
+  if (Io::kReads || !row.owner.empty()) io.field("owner", row.owner);
   io.field("number", row.judgement.number);
   io.word("verdict", row.judgement.verdict, Verdict::rejected, [](Verdict v) { return to_string(v); });
   io.field("note", row.judgement.note);
@@ -67,11 +68,11 @@ bool FindingBook::read(const std::string& text) {
   in.read("findings", rows);
   if (!wrong.empty() || version != kVersion || rows.size() > kMaxEntries) return false;
   std::set<std::uint32_t> numbers;
-  for (auto& [robot, id, judgement] : rows) {
+  for (auto& [robot, id, owner, judgement] : rows) {
     findings::Key key{.robot = robot};
     const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), key.id, 16);
-    if (error != std::errc() || end != id.data() + id.size() || judgement.number == 0 ||
-        !numbers.insert(judgement.number).second)
+    if (error != std::errc() || end != id.data() + id.size() || !findings::read_owner(owner, key.owner) ||
+        judgement.number == 0 || !numbers.insert(judgement.number).second)
       return false;
     judgement.note = command::clean(judgement.note, kMaxNote);
     next_ = std::max(next_, judgement.number + 1);
@@ -83,7 +84,8 @@ bool FindingBook::read(const std::string& text) {
 std::string FindingBook::as_text() const {
   std::vector<StoredJudgement> rows;
   for (const auto& [key, judgement] : entries_)
-    rows.push_back({key.robot, findings::id_text(key.id), judgement});
+    rows.push_back({key.robot, findings::id_text(key.id),
+                    key.owner == findings::Owner{} ? "" : findings::owner_text(key.owner), judgement});
   return line_of({{"version", kVersion}, {"findings", JsonWriter::of(rows)}});
 }
 

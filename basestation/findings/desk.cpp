@@ -33,7 +33,7 @@ Result<void> FindingDesk::hear(const std::string& robot, std::span<const std::ui
   return take(std::move(*piece), std::move(stored));
 }
 
-Result<void> FindingDesk::hear_station(const std::string& station, const findings::StationId& id,
+Result<void> FindingDesk::hear_station(const std::string& station, const findings::Owner& id,
                                        std::span<const std::uint8_t> bytes, std::function<void()> stored) {
   auto piece = findings::decode_piece(bytes);
   if (!piece) return piece.error();

@@ -57,7 +57,7 @@ class FindingDesk {
   /// Takes a piece with marks of another station, genuine or not. `station`, `id`: whose participant sent it.
   /// `stored` as of hear(). Errors: wrong_protocol, malformed (also: what is no mark of that station),
   /// queue_full (also: more than kMaxMarks of one station).
-  Result<void> hear_station(const std::string& station, const findings::StationId& id,
+  Result<void> hear_station(const std::string& station, const findings::Owner& id,
                             std::span<const std::uint8_t> piece, std::function<void()> stored);
 
   /// Number of the marks of a station; withdrawn ones, too.

@@ -42,7 +42,7 @@ std::optional<transfer::Source::Content> MarkSource::next(std::span<const PeerId
       const auto held = known->second.find(mark);
       return held == known->second.end() || held->second.rests_until <= now;
     };
-    const auto finding = desk_.all().find({station_, id});
+    const auto finding = desk_.all().find(marks_.key_of(id));
     // A newer revision that is not on the disk yet goes when it is.
     if (finding != desk_.all().end() && finding->second.revision == revision &&
         std::ranges::any_of(peers, wanted))
@@ -50,7 +50,8 @@ std::optional<transfer::Source::Content> MarkSource::next(std::span<const PeerId
   }
   if (due.empty()) return std::nullopt;
   std::ranges::stable_sort(due, std::ranges::greater{}, &findings::Finding::importance);
-  findings::FindingPiece piece{.robot = station_, .stored = static_cast<std::uint32_t>(revisions_.size())};
+  findings::FindingPiece piece{.robot = station_, .stored = static_cast<std::uint32_t>(revisions_.size()),
+                              .owner = marks_.key_of(0).owner};
   std::size_t bytes = findings::encoded_head(station_);
   // One that was lost twice goes alone, so that one that a station cannot store holds up no other.
   const auto goes_alone = [&](const findings::Finding& finding) {

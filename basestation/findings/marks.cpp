@@ -14,7 +14,7 @@ Error wrong_mark(const char* what) { return {Reason::bad_argument, what}; }
 
 }  // namespace
 
-Marks::Marks(std::string station, const findings::StationId& id, std::uint64_t seed, FindingDesk& desk,
+Marks::Marks(std::string station, const findings::Owner& id, std::uint64_t seed, FindingDesk& desk,
              Executor& home)
     : station_(std::move(station)), id_(id), random_(seed), desk_(desk), home_(home) {}
 
@@ -28,13 +28,13 @@ Result<void> Marks::add(const Mark& mark, Done done) {
                             .position = mark.position,
                             .stamp = static_cast<std::uint64_t>(home_.now().time_since_epoch().count()),
                             .text = mark.text,
-                            .data = findings::encode_mark(id_)};
+                            .data = findings::encode_mark()};
   if (mark.text.size() > findings::Finding::kText) return wrong_mark("the text has more than 128 bytes");
   if (mark.kind == findings::kStairs) return wrong_mark("staircases are measured by robots");
   if (desk_.marks_of(station_) >= kMaxMarks)
     return {Reason::queue_full, "this station has " + std::to_string(kMaxMarks) + " marks already"};
   do {
-    finding.key = {station_, random_.next()};
+    finding.key = key_of(random_.next());
   } while (finding.key.id == 0 || desk_.all().contains(finding.key));
   const findings::Key key = finding.key;
   if (auto kept = put(std::move(finding), std::move(done)); !kept) return kept;

@@ -34,7 +34,7 @@ class Marks {
   using Done = std::function<void(const findings::Finding&, bool on_disk)>;
 
   /// `station`: the operator's name. `seed`: of ids, another one at each start.
-  Marks(std::string station, const findings::StationId& id, std::uint64_t seed, FindingDesk& desk,
+  Marks(std::string station, const findings::Owner& id, std::uint64_t seed, FindingDesk& desk,
         Executor& home);
 
   /// Adds a mark; `done` is called once, at once or later. Errors: bad_argument (kind, text or place),
@@ -44,6 +44,8 @@ class Marks {
   Result<void> remove(const findings::Key& key, Done done);
   /// Whether a finding is a mark of this station.
   bool is_own(const findings::Finding& finding) const;
+  /// The key of this station's mark of that id.
+  findings::Key key_of(std::uint64_t id) const { return {station_, id, id_}; }
   /// Time since a mark of this station was added, s; nothing: it was in an earlier run, whose clock is not
   /// known, or by another station.
   std::optional<double> age(const findings::Finding& finding) const;
@@ -58,7 +60,7 @@ class Marks {
   void end(std::uint64_t number, bool on_disk);
 
   std::string station_;
-  findings::StationId id_;
+  findings::Owner id_;
   Random random_;
   FindingDesk& desk_;
   Executor& home_;

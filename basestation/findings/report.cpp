@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "basestation/findings/placed.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
@@ -39,7 +40,7 @@ std::string verdict_text(const FoundItem& item) {
 }  // namespace
 
 FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Marks& marks,
-                            const Fleet& fleet, const std::vector<std::string>& robots) {
+                            const ChunkStore& chunks, const Fleet& fleet, const std::vector<std::string>& robots) {
   FoundReport report;
   std::map<std::string, std::uint32_t> here;
   for (const Finding* f : chosen(desk, robots)) {
@@ -47,7 +48,7 @@ FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, co
                    .id = findings::id_text(f->key.id),
                    .kind = command::clean(f->kind, Finding::kKind),
                    .importance = f->importance,
-                   .position = f->position,
+                   .position = placed(*f, chunks).position,
                    .text = command::clean(f->text, Finding::kText),
                    .withdrawn = f->withdrawn,
                    .mark = findings::marked_by(*f).has_value()};
@@ -97,7 +98,9 @@ nlohmann::json findings_json(const FoundReport& report, const FindingDesk& desk,
   for (nlohmann::json& row : out["findings"]) {
     const findings::Key* key = book.key_of(row["number"].get<std::uint32_t>());
     const auto found = key ? desk.all().find(*key) : desk.all().end();
-    if (found != desk.all().end()) row["data"] = found->second.data;
+    if (found == desk.all().end()) continue;
+    row["data"] = found->second.data;
+    row["owner"] = findings::owner_text(key->owner);
   }
   return out;
 }

@@ -75,6 +75,7 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
     return false;
   }
   bool complete = true;
+  robots_.at(robot).owners[perception::owner_of(piece.key.start)] = ++direct_parts_;
   for (const perception::BlockUpdate& update : piece.blocks) {
     const auto known = into->blocks.find(update.block.index);
     if (known == into->blocks.end()) {

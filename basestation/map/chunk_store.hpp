@@ -66,6 +66,8 @@ class ChunkStore {
     std::map<std::string, Carried> carriers{};  ///< By the robot that sent it.
     std::size_t carried_blocks{};               ///< Those of `blocks` that a carrier sent.
     perception::MapDigest digest{};
+    /// When each robot of this name (perception::owner_of()) sent something last itself, as a rising number.
+    std::map<std::uint32_t, std::uint64_t> owners{};
   };
 
   explicit ChunkStore(ChunkStoreParams params = {}) : params_(params) {}
@@ -133,7 +135,7 @@ class ChunkStore {
   std::size_t blocks_{};
   std::size_t carried_blocks_{};
   std::uint64_t refused_{}, evicted_{}, refused_carried_{}, carried_pieces_{};
-  std::uint64_t revision_{};
+  std::uint64_t revision_{}, direct_parts_{};
   std::optional<Time> begun_{};  ///< The first piece of this start.
   std::uint32_t now_{};          ///< When the present piece came, as Block::received.
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/map/status.hpp"
 
+#include <set>
+
 #include "basestation/map/ground_area.hpp"
 #include "basestation/report/table.hpp"
 
@@ -10,6 +12,13 @@ namespace {
 std::size_t waiting_for_pose(const ChunkStore::RobotMap& robot) {
   std::size_t out = 0;
   for (const auto& [key, submap] : robot.submaps) out += submap.T_map_submap ? 0 : 1;
+  return out;
+}
+
+/// The robots of this name that made the map.
+std::set<std::uint32_t> owners_of(const ChunkStore::RobotMap& robot) {
+  std::set<std::uint32_t> out;
+  for (const auto& [key, submap] : robot.submaps) out.insert(perception::owner_of(key.start));
   return out;
 }
 
@@ -64,6 +73,9 @@ std::string map_status_text(const MapReceiver& map, Time now) {
     if (const std::size_t missing = waiting_for_pose(robot); missing > 0)
       out += name + ": the place of " + std::to_string(missing) + " submaps has not arrived yet\n";
   for (const auto& [name, robot] : chunks.robots()) out += carried_text(name, robot, now);
+  for (const auto& [name, robot] : chunks.robots())
+    if (const std::size_t owners = owners_of(robot).size(); owners > 1)
+      out += name + ": maps of " + std::to_string(owners) + " robots of this name; the newest is that of the one heard last\n";
   const GroundArea all = ground_area(chunks, now);
   out += "all: " + fixed(all.m2, 0) + " m2, received within 10 s: " + fixed(100.0 * all.within_10s, 0) +
          " %, 1 min: " + fixed(100.0 * all.within_1min, 0) +
@@ -85,6 +97,7 @@ nlohmann::json map_status_json(const MapReceiver& map, Time now) {
                       {"m2", ground_area(chunks, now, name).m2},
                       {"submaps", robot.submaps.size()},
                       {"submaps_without_pose", waiting_for_pose(robot)},
+                      {"owners", owners_of(robot).size()},
                       {"blocks", robot.blocks},
                       {"bytes", robot.bytes},
                       {"pieces", robot.pieces},

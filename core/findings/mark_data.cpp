@@ -2,6 +2,7 @@
 #include "core/findings/mark_data.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace adit::findings {
 namespace {
@@ -10,20 +11,11 @@ constexpr std::array<std::uint8_t, 5> kMarkTag{'M', 'A', 'R', 'K', 1};
 
 }  // namespace
 
-store::Bytes encode_mark(const StationId& station) {
-  store::Bytes out(kMarkTag.begin(), kMarkTag.end());
-  out.insert(out.end(), station.begin(), station.end());
-  return out;
-}
+store::Bytes encode_mark() { return {kMarkTag.begin(), kMarkTag.end()}; }
 
-std::optional<StationId> marked_by(const Finding& finding) {
-  StationId station{};
-  const store::Bytes& data = finding.data;
-  if (data.size() != kMarkTag.size() + station.size() ||
-      !std::equal(kMarkTag.begin(), kMarkTag.end(), data.begin()))
-    return std::nullopt;
-  std::copy(data.begin() + kMarkTag.size(), data.end(), station.begin());
-  return station;
+std::optional<Owner> marked_by(const Finding& finding) {
+  if (!std::ranges::equal(finding.data, kMarkTag) || finding.key.owner == Owner{}) return std::nullopt;
+  return finding.key.owner;
 }
 
 std::uint8_t usual_importance(std::string_view kind) {

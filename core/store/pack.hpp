@@ -114,6 +114,8 @@ class Unpacker {
     if (value > max) good_ = false;
     return good_ ? value : 0;
   }
+  /// Refuses what was read: good() is false from now on.
+  void fail() { good_ = false; }
   bool good() const { return good_; }
   /// Whether everything was good and no bytes are left.
   bool done() const { return good_ && left_.empty(); }

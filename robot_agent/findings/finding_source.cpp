@@ -44,10 +44,22 @@ findings::LoadReport FindingSource::load() {
   return report;
 }
 
+findings::Key FindingSource::key(std::uint64_t id) const {
+  const auto stored = finding_store_.all().lower_bound({params_.robot, id});
+  if (stored != finding_store_.all().end() && stored->first.robot == params_.robot && stored->first.id == id)
+    return stored->first;
+  return {params_.robot, id, params_.owner};
+}
+
+void FindingSource::complete(Finding& finding) const {
+  finding.key = key(finding.key.id);
+  if (outputs_.anchor) finding.anchor = outputs_.anchor(finding.position);
+}
+
 Result<std::uint64_t> FindingSource::report(Finding finding) {
-  finding.key.robot = params_.robot;
   const bool given = finding.key.id != 0;  // Else no station can have one of that id.
   while (finding.key.id == 0) finding.key.id = random_.next();
+  complete(finding);
   if (!findings::valid(finding))
     return {Reason::bad_argument, "a finding needs a kind, a place, and fits its bounds"};
   const std::uint64_t id = finding.key.id;
@@ -62,7 +74,7 @@ Result<std::uint64_t> FindingSource::report(Finding finding) {
 }
 
 Result<void> FindingSource::update(Finding finding) {
-  finding.key.robot = params_.robot;
+  complete(finding);
   if (!findings::valid(finding))
     return {Reason::bad_argument, "a finding needs a kind, a place, and fits its bounds"};
   const std::uint64_t id = finding.key.id;
@@ -251,12 +263,14 @@ std::optional<transfer::Source::Content> FindingSource::next(std::span<const Pee
     run_ = 0;
     return std::nullopt;
   }
-  FindingPiece piece{params_.robot, static_cast<std::uint32_t>(size()), overflowed_, {}};
+  FindingPiece piece{params_.robot, static_cast<std::uint32_t>(size()), overflowed_, {}, {}};
   std::vector<Carried>& carried = flights_[++tokens_];
   std::size_t bytes = findings::encoded_head(params_.robot);
   for (const Due& one : waiting) {
     const std::size_t more = findings::encoded_size(*one.finding);
-    if (!carried.empty() && (one.alone || bytes + more > max_bytes)) continue;
+    const findings::Owner& owner = one.finding->key.owner;
+    if (!carried.empty() && (one.alone || bytes + more > max_bytes || owner != piece.owner)) continue;
+    piece.owner = owner;
     bytes += more;
     piece.findings.push_back(*one.finding);
     carried.push_back({one.finding->key.id, one.finding->revision});

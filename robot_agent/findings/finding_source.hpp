@@ -16,6 +16,7 @@ namespace adit::agent {
 
 struct FindingParams {
   std::string robot{};
+  findings::Owner owner{};        ///< Of new findings: the robot's 128 random bits.
   std::size_t max_findings{512};  ///< Largest number of stored findings, [1, 65536].
   std::uint64_t seed{1};          ///< For ids of findings that were reported without one.
 };
@@ -55,6 +56,8 @@ class FindingSource final : public transfer::Source {
     /// Reports that there is no room: a finding was discarded or not accepted.
     std::function<void(const std::string& text)> full{};
     std::function<void(bool failing, const std::string& text)> failing{};
+    /// The anchor of a place in the map frame; may be empty, or return nothing.
+    std::function<std::optional<findings::Anchor>(const std::array<double, 3>& place)> anchor{};
   };
 
   FindingSource(FindingParams params, std::shared_ptr<store::Disk> disk, Executor& home,
@@ -62,10 +65,10 @@ class FindingSource final : public transfer::Source {
 
   /// Loads from disk the findings and the stations that have them.
   findings::LoadReport load();
-  /// Adds a finding and sets its robot and revision; id 0 is replaced by a new id. An existing id leaves what
+  /// Adds a finding and sets its robot, owner and revision; id 0 is replaced by a new id. An existing id leaves what
   /// is there. Errors: bad_argument, queue_full if there is no room and no less important finding.
   Result<std::uint64_t> report(findings::Finding finding);
-  /// Replaces the content of an existing finding and sets its robot and revision. It waits in memory for its
+  /// Replaces the content of an existing finding and sets its robot, owner and revision. It waits in memory for its
   /// revision, kRefinement at most while the disk works: a crash loses that much. A withdrawn finding comes
   /// back. Errors: bad_argument (also: no such id), out_of_range when there is no higher revision.
   Result<void> update(findings::Finding finding);
@@ -79,6 +82,9 @@ class FindingSource final : public transfer::Source {
   /// ended.
   void flush();
 
+  /// The key of a stored finding, which may be of another owner: the disk is from an older version of this
+  /// program, or the file with the robot's identity was lost. Else the key of a new one.
+  findings::Key key(std::uint64_t id) const;
   bool has(std::uint64_t id) const { return finding_store_.all().contains(key(id)); }
   std::size_t size() const { return finding_store_.all().size(); }
   /// Number of findings discarded or not accepted since the start.
@@ -129,7 +135,8 @@ class FindingSource final : public transfer::Source {
   std::vector<Due> due(std::span<const transfer::PeerId> peers, Time now);
   void take_from(FindingRecipient& peer, std::uint64_t id);
   bool make_room(std::uint8_t importance);
-  findings::Key key(std::uint64_t id) const { return {params_.robot, id}; }
+  /// Gives a finding its key, and its anchor.
+  void complete(findings::Finding& finding) const;
   /// The newest revision that may go out.
   const findings::Finding& sendable(std::uint64_t id) const;
   /// Sends the newest revision that may go out to all peers.

@@ -12,8 +12,6 @@ namespace {
 using perception::BlockIndex;
 
 constexpr Duration kMaxInsertion = 3s;
-constexpr int kRandomBits = 48;  // Of SubmapKey::start; the bits above count the starts.
-constexpr std::uint64_t kRandomPart = (std::uint64_t{1} << kRandomBits) - 1;
 constexpr std::uint64_t kStoredGroup = std::uint64_t{1} << 62;  // Groups of submaps of earlier starts.
 constexpr std::uint32_t kRevisionSkip = 1U << 20U;  // More than a robot sends between two writes to the disk.
 constexpr int kMaxDropped = 8;                      // Submaps, each time that the map is stored.
@@ -55,7 +53,7 @@ MapKeeper::MapKeeper(MapKeeperParams params, std::unique_ptr<MapDisk> disk)
         blocks.start = Random(params_.seed).fork(1).next();
         return blocks;
       }()),
-      start_(Random(params_.seed).fork(1).next() & kRandomPart) {}
+      start_(perception::map_start(1, params_.owner, Random(params_.seed).fork(1).next())) {}
 
 LoadedMap MapKeeper::load() {
   if (!disk_) return {};
@@ -78,14 +76,14 @@ LoadedMap MapKeeper::load() {
               [](const auto& a, const auto& b) { return a.revision < b.revision; });
     for (const perception::BlockUpdate& update : stored.blocks)
       blocks_.update(number, update.block, update.revision);
-    newest = std::max(newest, place.start >> kRandomBits);
+    newest = std::max(newest, perception::count_of(place.start));
   }
   for (const perception::StoredPlaces::Peer& peer : loaded.peers)
     stored_stations_[peer.id] = {peer.start, {peer.has.begin(), peer.has.end()}, 0};
   if (!submaps_.empty()) blocks_.skip_revisions(kRevisionSkip);
   first_ = static_cast<std::uint32_t>(submaps_.size());
   // Stations merge submaps by key: those of a later start must come later.
-  start_ = (newest + 1) << kRandomBits | start_;
+  start_ = perception::map_start(newest + 1, params_.owner, start_);
   loaded.submaps.clear();
   return loaded;
 }
@@ -110,6 +108,16 @@ std::vector<BlockRegion> MapKeeper::regions_around(std::span<const Eigen::Vector
       out.push_back({group, block_of(at - reach), block_of(at + reach)});
     }
   return out;
+}
+
+std::optional<PlaceInSubmap> MapKeeper::place_in_submap(const Eigen::Vector3d& place) const {
+  if (submaps_.empty()) return std::nullopt;
+  const auto number = static_cast<std::uint32_t>(submaps_.size() - 1);
+  const auto pose = poses_.pose(number);
+  if (!pose) return std::nullopt;
+  const Submap& submap = submaps_[number];
+  return PlaceInSubmap{submap.place.start, submap.place.index, pose->T_map_submap.inverse() * place,
+                       pose->T_map_submap.yaw()};
 }
 
 void MapKeeper::look_ahead(std::span<const Eigen::Vector3d> route) {

@@ -22,12 +22,21 @@ namespace adit::agent {
 struct MapKeeperParams {
   std::string robot{};
   std::uint64_t seed{1};            ///< Of the map's id.
+  std::uint32_t owner{};            ///< Hash of the robot's 128-bit id, see SubmapKey::start.
   Eigen::Vector3d origin{0, 0, 0};  ///< Of the rays of a scan without parts, base_link, m.
   double min_move{0.2};             ///< Way between two scans that enter the map, m.
   double min_turn{0.087};           ///< The same, rad.
   Duration min_period{1s};          ///< The same while the robot does neither.
   Duration save_period{10s};        ///< Between two writes of the open submap, and of the poses.
   BlockSourceParams blocks{};       ///< Without the robot's name and start.
+};
+
+/// A place that moves with a submap.
+struct PlaceInSubmap {
+  std::uint64_t start{};           ///< Of the submap's key.
+  std::uint32_t index{};           ///< Of the submap's key.
+  Eigen::Vector3d offset{0, 0, 0};  ///< Submap frame, m.
+  double yaw{};                    ///< Of the submap in the map frame now, rad.
 };
 
 /// The map of a robot beside the open submap's grid: the submaps, their blocks at 0.2 m, and what each
@@ -52,6 +61,9 @@ class MapKeeper {
   void taken(const Result<MapStep>& step, const MapFrame& frame);
   /// Updates the poses of the submaps when the robot's pose in the map was corrected.
   void follow(const MapFrame& frame);
+
+  /// A place (map frame, m) in the newest submap; nothing: there is none yet.
+  std::optional<PlaceInSubmap> place_in_submap(const Eigen::Vector3d& place) const;
 
   /// Whether a station lacks so much that what is ahead of the robot should go first.
   bool is_behind() const { return blocks_.is_behind(); }

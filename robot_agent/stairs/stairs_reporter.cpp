@@ -69,7 +69,7 @@ Result<void> StairsReporter::take(const StairsTracker::Tracked& tracked_stairs, 
       const auto reported = findings_.report(finding_of(stairs, stamp));
       if (!reported) return reported.error();
       if (keys_.size() >= kMostKeys) keys_.erase(keys_.begin());
-      keys_.insert_or_assign(id, findings::Key{robot_, *reported});
+      keys_.insert_or_assign(id, findings_.key(*reported));
       return {};
     }
   }

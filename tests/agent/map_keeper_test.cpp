@@ -214,6 +214,10 @@ TEST_F(MapKeeperTest, SendsBlocksAndPosesToAStationAndPosesAgainAfterACorrection
   EXPECT_NEAR(poses.at(0).position.x(), 7.0, 0.01);
   EXPECT_NEAR(poses.at(0).position.z(), 0.5, 0.01);
   EXPECT_NEAR(poses.at(0).yaw(), 0.2, 0.001);
+  const auto place = keeper.place_in_submap({9.0, 1.0, 1.5});
+  ASSERT_TRUE(place);
+  EXPECT_NEAR((poses.at(place->index) * place->offset - Eigen::Vector3d(9.0, 1.0, 1.5)).norm(), 0.0, 0.02);
+  EXPECT_NEAR(place->yaw, 0.2, 0.001);
 }
 
 /// How many blocks of the first piece of blocks lie near a point of the map, for a station that lacks all.

@@ -102,6 +102,49 @@ TEST_F(FindingSourceTest, SurvivesARestartOfTheRobot) {
   EXPECT_EQ(ops[0].desk->all().size(), 2u);
 }
 
+TEST_F(FindingSourceTest, ARobotThatReplacesAnotherOfItsNameHasFindingsOfItsOwn) {
+  const findings::Owner first{1}, second{2};
+  params.owner = first;
+  start_robot();
+  report(7);
+  run(1s);
+  EXPECT_TRUE(source->update(content(7, 2)).ok());
+  run(5s);
+  disk = std::make_shared<store::MemoryDisk>();
+  params.owner = second;
+  start_robot();
+  EXPECT_TRUE(source->report(content(7, 1)).ok());
+  run(5s);
+  const auto& there = ops[0].desk->all();
+  ASSERT_EQ(there.size(), 2u);
+  EXPECT_EQ(there.at({"r1", 7, first}).text, "seen 2 times");
+  EXPECT_EQ(there.at({"r1", 7, second}).text, "seen 1 times");
+}
+
+TEST_F(FindingSourceTest, FindingsOfAnEarlierIdentityStayWhatTheyAre) {
+  // The first was written before findings had owners; then the file with the identity was lost.
+  report(1);
+  run(1s);
+  params.owner = {1};
+  start_robot();
+  report(2);
+  run(1s);
+  params.owner = {2};
+  start_robot();
+  report(1);
+  report(2);
+  report(3);
+  EXPECT_EQ(source->size(), 3u) << "the first two are known";
+  for (const std::uint64_t id : {1, 2, 3}) EXPECT_TRUE(source->update(content(id, 9)).ok());
+  run(10s);
+  const auto& there = ops[0].desk->all();
+  ASSERT_EQ(there.size(), 3u);
+  for (const auto& [key, finding] : there) EXPECT_EQ(finding.text, "seen 9 times") << key.id;
+  EXPECT_TRUE(there.contains({"r1", 1, {}}));
+  EXPECT_TRUE(there.contains({"r1", 2, {1}}));
+  EXPECT_TRUE(there.contains({"r1", 3, {2}}));
+}
+
 TEST_F(FindingSourceTest, RestartedStationStillHasItsFindings) {
   report(1);
   run(3s);

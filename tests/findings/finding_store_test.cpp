@@ -126,7 +126,7 @@ TEST_F(FindingStoreTest, AFullStoreTakesNewRevisions) {
 }
 
 TEST_F(FindingStoreTest, ReadsFilesOfVersion1AndReplacesThem) {
-  disk->plant(file_name({"r1", 7}), file_of_version_1(some(7)));
+  disk->plant(file_name({"r1", 7}), file_of_version(1, some(7)));
   make();
   EXPECT_EQ(loaded, LoadReport{});
   EXPECT_EQ(finding_store->all().at({"r1", 7}), some(7));

@@ -35,17 +35,50 @@ TEST(Finding, ComesBackFromItsFileWithItsRevision) {
 }
 
 TEST(Finding, OfAFileOfVersion1WasNeverChanged) {
-  const FindingFile file = read_finding(file_of_version_1(some(7)));
+  const FindingFile file = read_finding(file_of_version(1, some(7)));
   EXPECT_EQ(file.found, store::LoadStatus::good);
   EXPECT_EQ(file.finding, some(7));
   EXPECT_EQ(read_finding(store::encode_envelope({{'F', 'I', 'N', 'D'}, 0, 1024}, 0, store::Bytes(9))).found,
             store::LoadStatus::older);
 }
 
+TEST(Finding, OfAFileOfVersion2HasNoOwner) {
+  Finding f = some(7);
+  f.revision = 3;
+  f.withdrawn = true;
+  const FindingFile file = read_finding(file_of_version(2, f));
+  EXPECT_EQ(file.found, store::LoadStatus::good);
+  EXPECT_EQ(file.finding, f);
+}
+
+Finding owned() {
+  Finding f = some(7);
+  for (std::size_t i = 0; i < f.key.owner.size(); ++i) f.key.owner[i] = static_cast<std::uint8_t>(16 * i + 1);
+  f.anchor = {5, 6, {1.0f, 2.0f, -3.0f}, 0.5f};
+  f.photo = {77, 2000, 800};
+  return f;
+}
+
+TEST(Finding, ComesBackFromItsFileWithOwnerAnchorAndPhoto) { EXPECT_EQ(from_file(to_file(owned())), owned()); }
+
+TEST(Finding, HasTheNameOfItsOwnerInItsFile) {
+  EXPECT_EQ(file_name(owned().key), "finding-r1-0000000000000007-01112131415161718191a1b1c1d1e1f1");
+  Owner owner{};
+  EXPECT_TRUE(read_owner(owner_text(owned().key.owner), owner));
+  EXPECT_EQ(owner, owned().key.owner);
+  EXPECT_TRUE(read_owner("", owner));
+  EXPECT_EQ(owner, Owner{});
+  for (const char* text : {"1", "01112131415161718191a1b1c1d1e1f", "01112131415161718191a1b1c1d1e1f1f",
+                           "0x112131415161718191a1b1c1d1e1f1", "-1112131415161718191a1b1c1d1e1f1"})
+    EXPECT_FALSE(read_owner(text, owner)) << text;
+}
+
 TEST(Finding, HasTheSameContentInAnyRevision) {
   Finding f = some(7);
   f.revision = 4;
   EXPECT_TRUE(same_content(f, some(7)));
+  f.anchor = {5, 6, {1.0f, 2.0f, -3.0f}, 0.5f};
+  EXPECT_TRUE(same_content(f, some(7))) << "the same place in another submap";
   f.withdrawn = true;
   EXPECT_FALSE(same_content(f, some(7)));
 }

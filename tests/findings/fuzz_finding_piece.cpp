@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   store::Bytes bytes(data + 1, data + size);
   if (data[0] % 4 != 0) {
     if (bytes.empty()) return 0;
-    bytes[0] = static_cast<std::uint8_t>(1 + data[0] / 4 % 2);  // The version.
+    bytes[0] = static_cast<std::uint8_t>(1 + data[0] / 4 % 3);  // The version.
     const std::uint32_t sum = crc32c(bytes);
     for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(sum >> shift));
   }
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // What was accepted is valid, and comes back from its bytes.
   if (piece->findings.empty() || piece->findings.size() > findings::FindingPiece::kMaxFindings) std::abort();
   for (const findings::Finding& finding : piece->findings)
-    if (!valid(finding) || finding.key.robot != piece->robot) std::abort();
+    if (!valid(finding) || finding.key.robot != piece->robot || finding.key.owner != piece->owner) std::abort();
   const auto back = findings::decode_piece(findings::encode(*piece));
   if (!back || *back != *piece) std::abort();
   return 0;

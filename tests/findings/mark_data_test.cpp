@@ -7,8 +7,8 @@ namespace adit::findings {
 namespace {
 
 TEST(MarkData, NamesItsStationAndNothingElseDoes) {
-  const StationId station{1, 2, 3, 4, 5};
-  Finding mark{.key = {"op1", 7}, .kind = "person", .data = encode_mark(station)};
+  const Owner station{1, 2, 3, 4, 5};
+  Finding mark{.key = {"op1", 7, station}, .kind = "person", .data = encode_mark()};
   EXPECT_TRUE(valid(mark));
   EXPECT_EQ(marked_by(mark), station);
   for (std::size_t i = 0; i < 5; ++i) {
@@ -18,10 +18,13 @@ TEST(MarkData, NamesItsStationAndNothingElseDoes) {
   }
   mark.data.push_back(0);
   EXPECT_FALSE(marked_by(mark)) << "longer";
-  mark.data.resize(20);
+  mark.data.resize(4);
   EXPECT_FALSE(marked_by(mark)) << "truncated";
   mark.data.clear();
   EXPECT_FALSE(marked_by(mark));
+  mark.data = encode_mark();
+  mark.key.owner = {};
+  EXPECT_FALSE(marked_by(mark)) << "of no station";
 }
 
 TEST(MarkData, ImportanceIsByKind) {

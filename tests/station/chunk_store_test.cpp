@@ -30,6 +30,7 @@ class ChunkStoreTest : public testing::Test {
   ChunkStoreTest() { EXPECT_TRUE(chunks.count("r1", 100, 7, Time{})); }
   ChunkStore chunks{};
   SubmapKey key{"r1", 5, 0};
+  std::uint32_t sent_{};
 };
 
 TEST_F(ChunkStoreTest, TheHigherRevisionWinsInAnyOrder) {
@@ -76,6 +77,35 @@ TEST_F(ChunkStoreTest, AnOlderPoseChangesNothing) {
   EXPECT_TRUE(chunks.take("r1", pose_of(key, Pose3::level({1, 0, 0}, 0), 4)));
   EXPECT_TRUE(chunks.take("r1", pose_of(key, Pose3::level({2, 0, 0}, 0), 3)));
   EXPECT_EQ(chunks.robots().at("r1").submaps.at(key).T_map_submap->position.x(), 1.0);
+}
+
+/// Where the newest submap of r1 begins, m.
+double newest_x(const ChunkStore& chunks) {
+  for (const MapPart& part : parts_of(chunks, "r1"))
+    if (part.newest) return part.T_map_submap.position.x();
+  return -1.0;
+}
+
+TEST_F(ChunkStoreTest, TheNewestMapIsThatOfTheRobotOfANameThatWasHeardLast) {
+  // The first robot was started five times; then another one, with a new disk, takes its place.
+  const std::vector<SubmapKey> keys{{"r1", perception::map_start(4, 0xaaaa, 1), 0},
+                                    {"r1", perception::map_start(5, 0xaaaa, 1), 0},
+                                    {"r1", perception::map_start(1, 0xbbbb, 1), 0}};
+  const auto send = [&](std::size_t which) {
+    EXPECT_TRUE(chunks.take("r1", piece_of(keys[which], {0, 0, 0}, kAll, which, 1 + ++sent_)));
+    const Pose3 pose = Pose3::level({static_cast<double>(which), 0, 0}, 0);
+    EXPECT_TRUE(chunks.take("r1", pose_of(keys[which], pose, 1)));
+  };
+  send(0);
+  send(1);
+  EXPECT_EQ(newest_x(chunks), 1.0);
+  send(0);
+  EXPECT_EQ(newest_x(chunks), 1.0) << "a start of the same disk that comes late";
+  send(2);
+  EXPECT_EQ(newest_x(chunks), 2.0);
+  MapPiece carried = piece_of(keys[1], {1, 0, 0}, kAll, 1, 1);
+  EXPECT_TRUE(chunks.take_carried("r2", carried, 100, Time{}));
+  EXPECT_EQ(newest_x(chunks), 2.0) << "another robot carried the map of the dead one";
 }
 
 TEST_F(ChunkStoreTest, OnlyTheRobotItselfAddsToItsMap) {

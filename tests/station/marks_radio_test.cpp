@@ -137,8 +137,8 @@ TEST_P(MarksRadioTest, OfOneStationComeFromNoOther) {
   // A third participant says that it is op1, with a higher revision of its mark.
   const auto rows = execute(one, "findings op1").json["findings"];
   const std::uint64_t mark = std::stoull(rows[0]["id"].get<std::string>(), nullptr, 16);
-  findings::Finding forged{.key = {"op1", mark}, .revision = 9, .withdrawn = true, .kind = "gas"};
-  forged.data = findings::encode_mark(one.id);
+  findings::Finding forged{.key = {"op1", mark, one.id}, .revision = 9, .withdrawn = true, .kind = "gas"};
+  forged.data = findings::encode_mark();
   const auto machine = scheduler_.machine("thief", 1s);
   const auto wire = network_.join(77, "thief");
   auto writer = wire::Writer<radio::BulkPiece>::make(*wire, wire::topics::kBulk);
@@ -147,7 +147,7 @@ TEST_P(MarksRadioTest, OfOneStationComeFromNoOther) {
   for (std::uint32_t i = 1; i <= 10; ++i) {
     (void)writer->write(contract::encode(
         contract::BulkPiece{"op1", 77, i, static_cast<std::uint8_t>(transfer::Kind::findings), 0,
-                            findings::encode({"op1", 1, 0, {forged}})}));
+                            findings::encode({"op1", 1, 0, {forged}, one.id})}));
     run_for(500ms);
   }
   EXPECT_EQ(marks(two)[0], mark_of_one);
@@ -163,33 +163,34 @@ TEST(MarksDesk, TakesOfAStationItsOwnMarksAlone) {
   FindingDesk desk(
       {}, nullptr, *strand,
       FindingDesk::Outputs{[](const findings::Finding&) {}, [](const std::string&, const std::string&) {}});
-  const findings::StationId id{7};
-  const auto mark = [&](std::uint64_t number, const findings::StationId& by) {
-    return findings::Finding{.key = {"op2", number}, .kind = "gas", .data = findings::encode_mark(by)};
+  const findings::Owner id{7};
+  const auto mark = [](std::uint64_t number, const findings::Owner& by) {
+    return findings::Finding{.key = {"op2", number, by}, .kind = "gas", .data = findings::encode_mark()};
   };
   std::size_t stored = 0;
   const auto hear = [&](const std::string& name, const findings::FindingPiece& piece) {
     const auto heard = desk.hear_station(name, id, findings::encode(piece), [&stored] { ++stored; });
     return heard ? Reason::none : heard.reason();
   };
-  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(1, id)}}), Reason::none);
+  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(1, id)}, id}), Reason::none);
   EXPECT_EQ(stored, 1U);
-  EXPECT_EQ(hear("op3", {"op2", 1, 0, {mark(2, id)}}), Reason::malformed) << "another station's";
-  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(2, {8})}}), Reason::malformed) << "another one of that name";
+  EXPECT_EQ(hear("op3", {"op2", 1, 0, {mark(2, id)}, id}), Reason::malformed) << "another station's";
+  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(2, {8})}, {8}}), Reason::malformed) << "another one of that name";
   findings::Finding plain = mark(2, id);
   plain.data.clear();
-  EXPECT_EQ(hear("op2", {"op2", 1, 0, {plain}}), Reason::malformed) << "no mark";
+  EXPECT_EQ(hear("op2", {"op2", 1, 0, {plain}, id}), Reason::malformed) << "no mark";
   findings::Finding stairs = mark(2, id);
   stairs.kind = "stairs";
-  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(3, id), stairs}}), Reason::malformed);
+  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(3, id), stairs}, id}), Reason::malformed);
   EXPECT_EQ(desk.all().size(), 1U) << "nothing of a refused piece is taken";
-  findings::Finding robots{.key = {"op2", 9}, .kind = "gas"};
-  EXPECT_TRUE(desk.hear("op2", findings::encode({"op2", 1, 0, {robots}}), [] {}).ok());
-  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(9, id)}}), Reason::malformed) << "a robot of that name found it";
+  findings::Finding robots{.key = {"op2", 9, id}, .kind = "gas"};
+  EXPECT_TRUE(desk.hear("op2", findings::encode({"op2", 1, 0, {robots}, id}), [] {}).ok());
+  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(9, id)}, id}), Reason::malformed)
+      << "a robot of that name found it";
   EXPECT_EQ(hear("op2", {}), Reason::malformed);
   for (std::uint64_t i = 100; i < 100 + FindingDesk::kMaxMarks - 1; ++i)
-    EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(i, id)}}), Reason::none);
-  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(9999, id)}}), Reason::queue_full);
+    EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(i, id)}, id}), Reason::none);
+  EXPECT_EQ(hear("op2", {"op2", 1, 0, {mark(9999, id)}, id}), Reason::queue_full);
 }
 
 }  // namespace

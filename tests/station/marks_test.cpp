@@ -122,8 +122,8 @@ TEST_F(MarksTest, AreAnsweredWhileTheDiskFailsAndStoredLater) {
 
 TEST_F(MarksTest, OfAStationComeFromNoRobot) {
   EXPECT_EQ(execute("finding add person 1 2").exit_code, 0);
-  const findings::Finding forged{.key = {"r1", 7}, .kind = "person", .data = findings::encode_mark(kId)};
-  send({"r1", 1, 0, {forged}});
+  const findings::Finding forged{.key = {"r1", 7, kId}, .kind = "person", .data = findings::encode_mark()};
+  send({"r1", 1, 0, {forged}, kId});
   EXPECT_EQ(listed().size(), 1U);
   EXPECT_EQ(execute("findings").json["refused_pieces"], 1);
 }
@@ -137,7 +137,7 @@ TEST_F(MarksTest, OfAStationAreNotReplacedByARobotOfItsName) {
   findings::Finding robots = desk.all().begin()->second;
   robots.revision = 9;
   robots.data.clear();
-  EXPECT_EQ(desk.hear("op1", findings::encode({"op1", 1, 0, {robots}}), [] {}).reason(), Reason::malformed);
+  EXPECT_EQ(desk.hear("op1", findings::encode({"op1", 1, 0, {robots}, kId}), [] {}).reason(), Reason::malformed);
   EXPECT_TRUE(marks.is_own(desk.all().begin()->second));
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "basestation/commands/station_commands.hpp"
+#include "basestation/findings/report.hpp"
 #include "basestation/model/json.hpp"
 #include "core/findings/finding_piece.hpp"
 #include "core/findings/stairs_data.hpp"
@@ -53,15 +54,41 @@ class StairsTest : public StationTest {
     sample.step(step);
     fleet_.hear(sample, {.received = Time(1s)});
   }
-  StairsReport report() { return stairs_report(desk_, book_, fleet_); }
+  StairsReport report() { return stairs_report(desk_, book_, chunks_, fleet_); }
 
   FindingBook book_;
   FindingDesk desk_;
+  Marks marks_{"op1", {1}, 1, desk_, *strand_};
+  ChunkStore chunks_;
   Fleet fleet_{"op1", {1}};
 };
 
 TEST_F(StairsTest, WithoutAnyTheReportSaysSo) {
   EXPECT_EQ(stairs_text(report()), "no staircase was found yet\n");
+}
+
+TEST_F(StairsTest, MoveWithTheSubmapInWhichTheyWereSeen) {
+  const Staircase stairs = flight_to_the_north(4);
+  const perception::SubmapKey key{"r1", 77, 3};
+  const Pose3 before = Pose3::level({1, 2, 0.5}, 0.25), after = Pose3::level({1, 2.5, -0.1}, 0.5);
+  const Eigen::Vector3f offset = (before.inverse() * stairs.foot).cast<float>();
+  find({.key = {"r1", 1},
+        .kind = findings::kStairs,
+        .position = {stairs.foot.x(), stairs.foot.y(), stairs.foot.z()},
+        .data = findings::encode_stairs(stairs),
+        .anchor = findings::Anchor{77, 3, {offset.x(), offset.y(), offset.z()}, 0.25f}});
+  ASSERT_EQ(report().stairs.size(), 1u);
+  EXPECT_NEAR((report().stairs[0].stairs.foot - stairs.foot).norm(), 0.0, 0.001) << "its submap is not here";
+  ASSERT_TRUE(chunks_.count("r1", 1, 0, Time{}));
+  ASSERT_TRUE(chunks_.take("r1", perception::SubmapPoses{{{key, before, 1}}}));
+  EXPECT_NEAR((report().stairs[0].stairs.foot - stairs.foot).norm(), 0.0, 0.001);
+  EXPECT_NEAR(report().stairs[0].stairs.heading, stairs.heading, 0.01);
+  ASSERT_TRUE(chunks_.take("r1", perception::SubmapPoses{{{key, after, 2}}}));
+  const Eigen::Vector3d moved = after * (before.inverse() * stairs.foot);
+  EXPECT_NEAR((report().stairs[0].stairs.foot - moved).norm(), 0.0, 0.001);
+  EXPECT_NEAR(report().stairs[0].stairs.heading, stairs.heading + 0.25, 0.01);
+  const FoundReport found = findings_report(desk_, book_, marks_, chunks_, fleet_, {});
+  EXPECT_NEAR(found.findings.at(0).position[1], moved.y(), 0.001);
 }
 
 TEST_F(StairsTest, SeenByTwoRobotsAreOneRowWithTheFirstNumber) {
