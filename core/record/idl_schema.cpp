@@ -64,7 +64,7 @@ struct Index {
     for (std::string line; std::getline(lines, line);) {
       const std::string name = included(line);
       const std::string beside = path.substr(0, path.rfind('/') + 1) + name;
-      if (name.empty())
+      if (name.empty() && !line.starts_with('#'))  // Guards are not needed: each file comes once.
         out += line + "\n";
       else if (files.contains(beside))
         append(beside, seen, out);

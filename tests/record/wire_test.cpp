@@ -54,6 +54,13 @@ TEST(IdlSchema, EveryTopicHasOne) {
   }
 }
 
+TEST(IdlSchema, GuardsOfFilesThatAreIncludedTwiceAreLeftOut) {
+  const auto schema = idl_schema("vision_msgs::msg::dds_::Detection3DArray_");
+  ASSERT_TRUE(schema);
+  EXPECT_EQ(schema->text.find('#'), std::string::npos);
+  EXPECT_EQ(schema->text.find("struct Pose "), schema->text.rfind("struct Pose "));
+}
+
 TEST(IdlSchema, IncludesComeOnceAndFirst) {
   const auto schema = idl_schema("nav_msgs::msg::dds_::Odometry_");
   ASSERT_TRUE(schema.has_value());
