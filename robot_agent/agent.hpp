@@ -16,6 +16,7 @@
 #include "core/supervisor/restart_policy_engine.hpp"
 #include "core/wire/participant.hpp"
 #include "robot_agent/command/types.hpp"
+#include "robot_agent/findings/detection.hpp"
 #include "robot_agent/motion/map_frame.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/safeguard/safeguard_params.hpp"
@@ -64,6 +65,7 @@ struct AgentParams {
   SafeguardParams safeguards{};
   bool carry_maps{false};     ///< Carries maps of other robots on to stations.
   std::size_t findings{512};  ///< Maximum number of stored findings, [1, 65536].
+  DetectionParams detections{};
   SupervisionParams supervision{};
   /// Requests a restart of the agent's process, because a component could not be restarted. Called once, on a
   /// strand of the agent; empty: the agent keeps running and sends zero to the driver.

@@ -56,6 +56,7 @@ Agent::Impl::~Impl() {
   if (watch) watch->stop();
   if (context && context->radio) context->radio->close();
   if (context && context->driver) context->driver->close();
+  if (context && context->detections) context->detections->close();
 }
 
 void Agent::Impl::end_disk() {
@@ -206,6 +207,12 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
       Driver::open(io_of(*command.slot(), robot), params.velocity, std::move(handlers), e.odometry_source);
   if (!driver) return driver.error();
   e.driver = std::move(*driver);
+
+  e.detections = std::make_unique<DetectionInput>(
+      params.detections, params.name, params.platform, e.static_frames, *e.findings,
+      DetectionInput::Outputs{
+          [&e, &strand](const InputFault& fault) { e.inputs->report(fault, strand.now()); }});
+  if (auto opened = e.detections->open(io_of(*command.slot(), robot)); !opened) return opened.error();
 
   const bool routes_it = params.platform.router != "none";
   const bool maps_it = params.perception == PerceptionLevel::slam;

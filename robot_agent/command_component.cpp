@@ -69,7 +69,7 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
       telemetry_({*context.radio, *context.wire, context.rate, *context.driver, *context.watch, frames_,
                   commands_, behaviour_}),
       rivals_(now()),
-      topics_(used_topics(params.platform, params.velocity)) {}
+      topics_(used_topics(params.platform, params.velocity, params.detections.topics)) {}
 
 void Agent::CommandComponent::battery(float charge) {
   protect([&] { safeguards_.battery(charge, now()); });
@@ -207,6 +207,7 @@ void Agent::CommandComponent::beat() {
   const Time at = now();
   watch_driver();
   localiser_.watch(now());
+  context_.detections->tick({frames_, localiser_.T_odom_driver(), localiser_.unknown_because(at)}, at);
   watch_namesakes(at);
   listen_first(at);
   convoy_.tick(at);
@@ -246,6 +247,7 @@ void Agent::CommandComponent::watch_driver() {
 
 void Agent::CommandComponent::watch_topics(Time at) {
   context_.driver->look();
+  context_.detections->look(*context_.robot_wire);
   bool velocities = false;
   for (const InputFault& clash : type_clashes(*context_.robot_wire, topics_)) {
     context_.inputs->report(clash, at);

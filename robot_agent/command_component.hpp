@@ -17,6 +17,7 @@
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/discovery/namesakes.hpp"
 #include "robot_agent/discovery/peer_table.hpp"
+#include "robot_agent/findings/detection_input.hpp"
 #include "robot_agent/findings/finding_source.hpp"
 #include "robot_agent/motion/driver.hpp"
 #include "robot_agent/motion/frames.hpp"
@@ -62,6 +63,7 @@ struct Agent::Context {
   Restored restored{};                    ///< State at the start, or when the component was restarted.
   std::unique_ptr<StateKeeper> keeper{};  ///< The component's last state, in memory and on the disk.
   std::unique_ptr<FindingSource> findings{};
+  std::unique_ptr<DetectionInput> detections{};
   PlanService planner{"planner", 2};        ///< The services are callable from any thread.
   std::unique_ptr<RouteServices> router{};  ///< Null: this robot has no router.
   ScanService scans{"scan", 4};

@@ -36,6 +36,9 @@ class BatteryState;
 namespace tf2_msgs::msg {
 class TFMessage;
 }
+namespace vision_msgs::msg {
+class Detection3DArray;
+}
 
 namespace adit::wire::topics {
 
@@ -115,5 +118,8 @@ inline constexpr Topic<tf2_msgs::msg::TFMessage> kTfStatic{
     {"rt/tf_static", "tf2_msgs::msg::dds_::TFMessage_", QosClass::status, 16, kUnkeyed, 1 << 16}};
 inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{
     {"rt/battery_state", "sensor_msgs::msg::dds_::BatteryState_", QosClass::state, 1, kUnkeyed, 2048}};
+/// Objects that programs of the robot detect.
+inline constexpr Topic<vision_msgs::msg::Detection3DArray> kDetections{
+    {"rt/detections", "vision_msgs::msg::dds_::Detection3DArray_", QosClass::sensor, 4, kUnkeyed, 1 << 20}};
 
 }  // namespace adit::wire::topics

@@ -35,7 +35,8 @@ std::string ros_type(const std::string& dds_type) {
   return name;
 }
 
-std::vector<TopicUse> used_topics(const Platform& platform, VelocityType velocity) {
+std::vector<TopicUse> used_topics(const Platform& platform, VelocityType velocity,
+                                  const std::vector<std::string>& detections) {
   std::vector<TopicUse> all{use(topics::kOdom, false), use(topics::kScan, false),
                             use(topics::kTfStatic, false), use(topics::kBattery, false),
                             use(topics::kExternalCmdVel, false)};
@@ -47,6 +48,7 @@ std::vector<TopicUse> used_topics(const Platform& platform, VelocityType velocit
   for (const LidarConfig& lidar : platform.all_lidars())
     all.push_back(use(topics::kPoints, false, lidar.topic));
   if (platform.imu) all.push_back(use(topics::kImu, false, platform.imu->topic));
+  for (const std::string& topic : detections) all.push_back(use(topics::kDetections, false, topic));
   return all;
 }
 

@@ -17,8 +17,9 @@ struct TopicUse {
   bool writes{};                     ///< The agent writes it; otherwise it reads it.
 };
 
-/// The topics that an agent with this platform uses.
-std::vector<TopicUse> used_topics(const Platform& platform, VelocityType velocity);
+/// The topics that an agent with this platform uses. `detections`: names without rt/.
+std::vector<TopicUse> used_topics(const Platform& platform, VelocityType velocity,
+                                  const std::vector<std::string>& detections = {});
 
 /// The writers and readers of other participants that have one of these topics with another type: DDS
 /// delivers nothing between them and says nothing. One fault for each topic.

@@ -68,6 +68,8 @@ class Localiser : public Component {
   void restore(const StoredFrames& stored, bool first);
   StoredFrames stored() const;
 
+  /// See PoseCorrection; the identity without an odometry of its own.
+  Pose3 T_odom_driver() const { return localises() ? correction_.T_odom_driver() : Pose3{}; }
   /// Health of the robot's own odometry.
   Localisation health(Time at) const;
   /// Standard deviation of the position, m; infinite: the robot does not know where it is.

@@ -79,6 +79,36 @@ void read_battery(const config::Node& node, SafeguardParams& c) {
     battery.child("at_last").fail(Reason::out_of_range, "expected hold or return");
 }
 
+bool is_topic(const std::string& name) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '/';
+  };
+  return !name.empty() && name.size() <= 128 && name.front() != '/' && std::ranges::all_of(name, plain);
+}
+
+void read_detections(const config::Node& node, DetectionParams& c) {
+  const auto detections = node.child_if("detections");
+  if (!detections.present()) return;
+  c.topics = detections.texts("topics", c.topics);
+  std::vector<std::string> sorted = c.topics;
+  std::ranges::sort(sorted);
+  if (c.topics.size() > DetectionParams::kMaxTopics || !std::ranges::all_of(c.topics, is_topic) ||
+      std::ranges::adjacent_find(sorted) != sorted.end())
+    detections.child("topics").fail(Reason::out_of_range,
+                                    "topics: expected at most 4 different names without a slash in front");
+  c.min_score = detections.number("min_score", config::within(0.0, 1.0), c.min_score);
+  c.sightings = static_cast<int>(detections.integer("sightings", 1, 100, c.sightings));
+  const auto importance = detections.child_if("importance");
+  if (!importance.present()) return;
+  for (const auto& [kind, value] : importance.entries()) {
+    const auto number = static_cast<std::uint8_t>(value.as_integer(0, 255));
+    if (kind == "default")
+      c.default_importance = number;
+    else
+      c.importance[kind_of(kind)] = number;
+  }
+}
+
 /// The path of a missing tree stays as it was written: the agent starts, holds and reports the error.
 std::string find_tree(const std::string& tree, const std::string& beside) {
   const auto found = config::find_file(tree, beside);
@@ -137,6 +167,7 @@ void read_robot_keys(const config::Node& node, const std::string& file, RobotCon
   if (node.has("perception"))
     c.perception = static_cast<PerceptionLevel>(node.choice("perception", kPerceptionWords));
   if (const auto map = node.child_if("map"); map.present()) c.carry_maps = map.flag("carry", false);
+  read_detections(node, c.detections);
   if (node.has("start_height")) c.start_height = node.number("start_height", config::within(-1e5, 1e5));
   c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));
   if (node.has("tree")) c.tree = find_tree(node.text("tree"), file);
@@ -162,6 +193,7 @@ AgentParams agent_params(const RobotConfig& config) {
   params.velocity = config.velocity;
   params.perception = config.perception;
   params.carry_maps = config.carry_maps;
+  params.detections = config.detections;
   params.resume_after_restart = config.resume_after_restart;
   return params;
 }

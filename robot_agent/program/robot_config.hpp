@@ -10,6 +10,7 @@
 #include "core/log/log.hpp"
 #include "core/result/result.hpp"
 #include "core/wire/fastdds/fastdds_participant.hpp"
+#include "robot_agent/findings/detection.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/safeguard/safeguard_params.hpp"
 
@@ -39,7 +40,8 @@ struct RobotConfig {
   RobotInterfaces robot_interfaces{};
   VelocityType velocity{};  ///< `cmd_vel: twist` or `twist_stamped`
   PerceptionLevel perception{PerceptionLevel::off};
-  bool carry_maps{false};     ///< `map: {carry: true}`
+  bool carry_maps{false};  ///< `map: {carry: true}`
+  DetectionParams detections{};
   Duration lock_lease{300s};  ///< 0: never
   std::string tree{"trees/robot.xml"};
   std::string state{};  ///< Folder of the state that survives a restart; empty: the default folder; "none":
@@ -57,9 +59,9 @@ struct RobotConfig {
 std::string state_folder(const RobotConfig& config);
 
 /// Reads the keys that a robot's file and a scenario have in common: cmd_vel, lock_lease,
-/// perception, map, start_height, tree, on_link_loss, link_loss_after, battery, after_restart. A missing key
-/// leaves `config` as it is; a wrong one is noted at `node`. The tree is searched first in the folder of
-/// `file`, and becomes an absolute path.
+/// perception, map, detections, start_height, tree, on_link_loss, link_loss_after, battery, after_restart. A
+/// missing key leaves `config` as it is; a wrong one is noted at `node`. The tree is searched first in the
+/// folder of `file`, and becomes an absolute path.
 void read_robot_keys(const config::Node& node, const std::string& file, RobotConfig& config);
 
 /// IPv4 addresses of the named interfaces, 127.0.0.1 first. Errors: bad_argument with file and line, for an
