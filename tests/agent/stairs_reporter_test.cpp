@@ -46,8 +46,8 @@ TEST_F(StairsReporterTest, NamesAllThatItReportedAndHasNotWithdrawn) {
   EXPECT_TRUE(reporter_.all().empty());
   Staircase upper = six_steps();
   upper.foot.z() += 3.0;
-  EXPECT_TRUE(reporter_.take(1, six_steps(), 1));
-  EXPECT_TRUE(reporter_.take(2, upper, 1));
+  EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
+  EXPECT_TRUE(reporter_.take({2, upper}, 1));
   ASSERT_EQ(reporter_.all().size(), 2U);
   EXPECT_TRUE(source_.withdraw(source_.finding_store().all().begin()->first.id));
   EXPECT_EQ(stored().size(), 2U);
