@@ -5,7 +5,7 @@
 set(out "")
 foreach(file ${FILES})
   file(READ ${ROOT}/${file}.idl text)
-  string(REGEX REPLACE "#include[^\n]*\n" "" text "${text}")
+  string(REGEX REPLACE "#(include|ifndef|define|endif)[^\n]*\n" "" text "${text}")
   string(REGEX REPLACE "([a-z_]+::msg::)([A-Za-z0-9]+)" "\\1dds_::\\2_" text "${text}")
   string(REGEX REPLACE "struct ([A-Za-z0-9]+)" "struct \\1_" text "${text}")
   string(REPLACE "module msg {" "module msg { module dds_ {" text "${text}")
