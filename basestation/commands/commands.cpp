@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "adit/command.h"
+#include "basestation/commands/stairs_way.hpp"
 #include "basestation/commands/station_commands.hpp"
+#include "basestation/findings/stairs_report.hpp"
 #include "basestation/flow/arrival.hpp"
 #include "basestation/flow/steer.hpp"
 #include "basestation/model/leaving.hpp"
@@ -195,6 +197,7 @@ void Commands::run(std::uint64_t handle, const Request& request, Done done) {
   if (request.verb == verb("stop") && request.all) return stop_all(request, done);
   if (request.verb == verb("convoy start")) return start_convoy(handle, request, std::move(done));
   if (request.verb == verb("convoy stop")) return stop_convoy(handle, request, done);
+  if (request.verb == verb("stairs go")) return go_over_stairs(handle, request, done);
   command_robots(handle, request, request, reported_to(std::move(done)));
 }
 
@@ -286,6 +289,43 @@ void Commands::stop_convoy(std::uint64_t handle, Request request, const Done& do
   if (const RobotView* robot = fleet_.robot(request.robots.front()); robot && !robot->convoy.empty())
     request.robots = robot->convoy;
   command_robots(handle, Request(verb("peeloff"), request.robots), request, reported_to(done));
+}
+
+void Commands::go_over_stairs(std::uint64_t handle, const Request& request, const Done& done) {
+  const auto goals =
+      stairs_way(request, stairs_report(content_.desk(), content_.book(), content_.chunks(), fleet_));
+  if (!goals) return refuse(request, goals.reason(), goals.error().text, done);
+  if (goals->size() == 1 || !known(request))
+    return command_robots(handle, goals->front(), request, reported_to(done));
+  const std::string robot = request.robots.front();
+  const auto gather = std::make_shared<Gather>(request, reported_to(done));
+  const auto taken = [this, gather, index = gather->expect(robot)](Answer answer) {
+    answer.command = gather->request().info->name;
+    note(answer);
+    gather->take(index, std::move(answer));
+  };
+  gather->close();
+  const auto accepted = std::make_shared<bool>(false);
+  const auto later = [this, name = request.info->name](Answer answer) {
+    answer.command = name;
+    note(answer);
+  };
+  const auto flow = std::make_shared<Arrival>(
+      FlowDependencies{strand_, fleet_, sender_, stick_}, RobotCommand{.robot = robot, .request = goals->front()},
+      [accepted, taken, ended = flows_.end_drives_when_accepted(robot)](const Answer& answer) {
+        *accepted = answer.accepted;
+        ended(answer);
+        taken(answer);
+      },
+      [this, accepted, later, robot, far = goals->back()](const Answer& at_near_end) {
+        if (!*accepted) return;
+        if (!at_near_end.accepted) return later(at_near_end);
+        sender_.send({.robot = robot, .request = far}, later);
+      });
+  // It goes on when the command line that began it has ended.
+  constexpr std::uint64_t kNoLine = 0;
+  if (const auto started = flows_.start(kNoLine, flow); !started)
+    taken({.robot = robot, .reason = started.error().reason, .text = started.error().text});
 }
 
 void Commands::stop_all(const Request& request, const Done& done) {

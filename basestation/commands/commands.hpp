@@ -78,6 +78,8 @@ class Commands {
   /// Gives each robot its place; if one refuses, the others leave again.
   void start_convoy(std::uint64_t handle, const command::Request& request, Done done);
   void stop_convoy(std::uint64_t handle, command::Request request, const Done& done);
+  /// Sends a robot over a staircase; answered when it accepts the first goal.
+  void go_over_stairs(std::uint64_t handle, const command::Request& request, const Done& done);
   void stop_all(const command::Request& request, const Done& done);
   /// Stops the robots that are heard and were not asked yet.
   void ask_stop(std::shared_ptr<Gather> all);

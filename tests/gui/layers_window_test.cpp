@@ -109,6 +109,28 @@ TEST_F(LayersTest, StairsAreRibbonsOnceTheStationListedThem) {
   picture("stairs_solid");
 }
 
+TEST_F(LayersTest, ARobotThatMayClimbIsSentOverTheStaircaseThatIsPicked) {
+  answer(answer_of(findings_with_stairs()), "findings");
+  answer(answer_of(some_stairs()), "stairs");
+  open("stairs");
+  settle_layout();
+  EXPECT_EQ(text("stairsOffer"), "Tap a staircase to send a robot over it.");
+  touch(middle("goUp"));
+  touch(middle("staircase_4"));
+  EXPECT_EQ(text("stairsOffer"), "Select one robot to send it over staircase 4.");
+  control.select("r2", false);
+  EXPECT_EQ(text("stairsOffer"), "r2 climbs steps of 0.15 m at most");
+  touch(middle("goUp"));
+  EXPECT_TRUE(sink.lines.empty());
+  control.select("r1", false);
+  settle_layout();
+  EXPECT_EQ(text("stairsOffer"), "r1 over staircase 4");
+  picture("stairs_offer");
+  touch(middle("goDown"));
+  ASSERT_EQ(sink.lines.size(), 1U);
+  EXPECT_EQ(sink.lines[0], "stairs go r1 4 down");
+}
+
 TEST_F(LayersTest, StairsAreAskedForAgainWhenFindingsChangeWhileTheyAreAskedFor) {
   answer(answer_of(findings_with_stairs()), "findings");
   control.add_command({.id = 1, .ended = true, .line = "finding 4 reject", .mine = true});

@@ -63,7 +63,7 @@ void FakeRobot::publish() {
   (void)behaviour_.write(behaviour);
 }
 
-void FakeRobot::describe(float max_speed, float max_turn, bool holonomic) {
+void FakeRobot::describe(float max_speed, float max_turn, bool holonomic, float step) {
   if (!capabilities_)
     capabilities_ = wire::Writer<radio::Capabilities>::make(*wire_, wire::topics::kCapabilities).value();
   radio::Capabilities sample;
@@ -73,6 +73,8 @@ void FakeRobot::describe(float max_speed, float max_turn, bool holonomic) {
   sample.max_speed(max_speed);
   sample.max_turn(max_turn);
   sample.holonomic(holonomic);
+  sample.stairs(step > 0.0F);
+  sample.step(step);
   (void)capabilities_.write(sample);
 }
 

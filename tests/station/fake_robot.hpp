@@ -52,8 +52,8 @@ class FakeRobot {
 
   /// Authority and behaviour as they are now.
   void publish();
-  /// Says what it can do: m/s, rad/s.
-  void describe(float max_speed, float max_turn, bool holonomic);
+  /// Says what it can do: m/s, rad/s. `step`: of the stairs that it climbs, m; 0: it climbs none.
+  void describe(float max_speed, float max_turn, bool holonomic, float step = 0.0F);
   /// A refused stream.
   void refuse_stream(const std::string& station, Id kId, Reason reason);
   /// Sends a piece of content as the robot, or as the one named in it.

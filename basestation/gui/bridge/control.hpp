@@ -20,6 +20,7 @@
 #include "basestation/gui/bridge/detail_list.hpp"
 #include "basestation/gui/bridge/drive_control.hpp"
 #include "basestation/gui/bridge/mark_tool.hpp"
+#include "basestation/gui/bridge/stairs_offer.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
 #include "basestation/gui/bridge/tabs.hpp"
 #include "basestation/gui/scene/camera.hpp"
@@ -61,6 +62,9 @@ class Control : public QObject {
   Q_PROPERTY(QString silentTextShort READ silent_text_short NOTIFY shown)
   Q_PROPERTY(QString selectionText READ selection_text NOTIFY shown)
   Q_PROPERTY(int refusalCount READ refusal_count NOTIFY shown)
+  Q_PROPERTY(QString stairsText READ stairs_text NOTIFY stairs_shown)
+  Q_PROPERTY(bool stairsOffered READ stairs_offered NOTIFY stairs_shown)
+  Q_PROPERTY(bool gotoHeld READ goto_is_held NOTIFY shown)
   Q_PROPERTY(QString outcome READ outcome NOTIFY said)
   /// The same in a few words, where it has no room.
   Q_PROPERTY(QString outcomeShort READ outcome_short NOTIFY said)
@@ -130,6 +134,8 @@ class Control : public QObject {
   Q_INVOKABLE void trigger(int slot, bool held);
   Q_INVOKABLE void cure(int row, bool held);
   Q_INVOKABLE void stopAll();
+  /// Sends the selected robot over the marked staircase.
+  Q_INVOKABLE void goOverStairs(bool up, bool held);
   Q_INVOKABLE void restartStation() { sink_.start_station(); }
   /// A key of the keyboard; `scan` is its place, as Shift turns 1 into another character. True if it means
   /// something.
@@ -165,6 +171,8 @@ class Control : public QObject {
   QString silent_text_short() const;
   QString selection_text() const;
   int refusal_count() const;  ///< Actions that some robot of the selection would refuse.
+  QString stairs_text() const;
+  bool stairs_offered() const;
   QString outcome() const { return outcome_; }
   QString outcome_short() const { return outcome_short_; }
   QString outcome_kind() const { return outcome_kind_; }
@@ -178,6 +186,7 @@ class Control : public QObject {
  signals:
   void shown();  ///< The world, the link or the selection changed.
   void map_changed();
+  void stairs_shown();  ///< Which robot would take the marked staircase may have changed.
   /// The map should show this place in its middle, map frame, m; z may be NaN: that of the selection.
   void look_at(double x, double y, double z);
   void said();
@@ -204,6 +213,7 @@ class Control : public QObject {
   void pend(const BarButton& button);
   void press_slot(const char* id);
   void ask_for_place(const BarButton& button);
+  StairsOffer offer_of_stairs() const;
   QString reason_of(const BarButton& button) const;
   struct KeyRow;
   static std::span<const KeyRow> keys();

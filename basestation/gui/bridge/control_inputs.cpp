@@ -240,6 +240,25 @@ void Control::go_to(const Point& place, std::optional<double> z, bool held) {
         "goto");
 }
 
+StairsOffer Control::offer_of_stairs() const {
+  const auto& all = tabs_.staircases().stairs;
+  const auto picked = std::ranges::find(all, tabs_.picked(), &station::StairsItem::number);
+  const BarButton& button = bar_.buttons[slot_index("goto")];
+  return stairs_offer(picked == all.end() ? nullptr : &*picked, selection_, button.robots,
+                      reason_of(button).toStdString());
+}
+
+QString Control::stairs_text() const { return text_of(offer_of_stairs().text); }
+
+bool Control::stairs_offered() const { return !offer_of_stairs().robot.empty(); }
+
+void Control::goOverStairs(bool up, bool held) {
+  const StairsOffer offer = offer_of_stairs();
+  if (offer.robot.empty()) return say(text_of(offer.text), "refused");
+  if (goto_is_held() && !held) return say("Press and hold: " + text_of(offer.text), "sent");
+  order("stairs go " + offer.robot + " " + std::to_string(tabs_.picked()) + (up ? " up" : " down"), "goto");
+}
+
 void Control::pend(const BarButton& button) {
   pending_line_ = button.line;
   pending_slot_ = button.id;

@@ -27,7 +27,7 @@ Item {
         id: list
         objectName: "stairs"
         anchors.topMargin: 7.5 * Theme.mm
-        anchors.bottomMargin: 8 * Theme.mm
+        anchors.bottomMargin: 15 * Theme.mm
         spacing: 1
         model: tab.state_.stairs
         currentIndex: tab.state_.pickedStairsRow
@@ -49,10 +49,37 @@ Item {
     PlainLabel {
         objectName: "unreadable"
         x: 3 * Theme.mm
-        y: parent.height - height - 1 * Theme.mm
-        width: parent.width - 6 * Theme.mm
+        y: parent.height - 7 * Theme.mm
+        width: ways.x - 5 * Theme.mm
         height: 6 * Theme.mm
         color: Theme.dim
         text: tab.state_.unreadable !== "" ? tab.state_.unreadable : list.count === 0 ? "" : "Confirm or reject a staircase in Findings, by its id."
+    }
+    PlainLabel {
+        objectName: "stairsOffer"
+        visible: list.count > 0
+        x: 3 * Theme.mm
+        y: parent.height - 14 * Theme.mm
+        width: ways.x - 5 * Theme.mm
+        height: 6 * Theme.mm
+        text: tab.control.stairsText
+    }
+    Row {
+        id: ways
+        visible: list.count > 0
+        x: parent.width - width - 2 * Theme.mm
+        y: parent.height - 13.5 * Theme.mm
+        spacing: 2 * Theme.mm
+        component Way: HoldButton {
+            width: 30 * Theme.mm
+            height: 13 * Theme.mm
+            enabled: tab.control.stairsOffered
+            opacity: enabled ? 1 : 0.4
+            hold: tab.control.gotoHeld
+            meaning: text + tab.control.stairsText
+            spoken: text + ", " + tab.control.stairsText
+        }
+        Way { objectName: "goUp"; text: "go up"; onFired: held => tab.control.goOverStairs(true, held) }
+        Way { objectName: "goDown"; text: "go down"; onFired: held => tab.control.goOverStairs(false, held) }
     }
 }
