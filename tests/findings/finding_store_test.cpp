@@ -179,7 +179,7 @@ TEST_F(FindingStoreTest, DamagedFilesAreStoredUnderAnotherName) {
 }
 
 TEST_F(FindingStoreTest, FilesOfANewerVersionStayAsTheyAre) {
-  const store::Bytes newer = store::encode_envelope({{'F', 'I', 'N', 'D'}, 3, 1024}, 0, store::Bytes(40, 1));
+  const store::Bytes newer = store::encode_envelope({{'F', 'I', 'N', 'D'}, 4, 1024}, 0, store::Bytes(40, 1));
   disk->plant(file_name({"r1", 2}), newer);
   make();
   EXPECT_EQ(loaded.newer, 1u);
