@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Findings that change at random over links that lose, repeat and reorder, with restarts, full disks and
 // power cuts of the robot and of the stations.
+#include <cstdlib>
+
 #include "tests/findings/source_bench.hpp"
 
 namespace adit::agent {
@@ -142,7 +144,14 @@ TEST_P(FindingRevisions, OfWhichOneIsAcknowledgedAreAtTheStationAndTheNewestArri
   EXPECT_EQ(sent.size(), total) << "then nothing is sent";
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, FindingRevisions, testing::Range<std::uint64_t>(1, 25));
+/// ADIT_CHAOS_SEEDS: how many; more in a campaign.
+std::uint64_t revision_seeds() {
+  const char* wanted = std::getenv("ADIT_CHAOS_SEEDS");
+  return wanted == nullptr ? 24 : std::strtoull(wanted, nullptr, 10);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, FindingRevisions,
+                         testing::Range<std::uint64_t>(1, 1 + revision_seeds()));
 
 }  // namespace
 }  // namespace adit::agent
