@@ -499,7 +499,8 @@ void Agent::CommandComponent::seek_stairs(const std::shared_ptr<const Scan>& sca
 }
 
 std::vector<Staircase> Agent::CommandComponent::known_stairs() const {
-  if (!context_.stairs || !frames_.initialised()) return {};
+  // Those of an earlier start have a place once the robot knows its own.
+  if (!context_.stairs || !frames_.initialised() || !localiser_.recognised()) return {};
   const Pose3 T_odom_map = frames_.map_frame().T_map_odom.inverse();
   std::vector<Staircase> out = context_.stairs->all();
   for (Staircase& stairs : out) {

@@ -134,7 +134,7 @@ class Agent::CommandComponent : public Component {
   void located(std::shared_ptr<Scan> scan, const LidarScan& lidar);
   /// Offers a scan to the map, in the odometry frame.
   void add_to_map(const std::shared_ptr<const Scan>& scan);
-  /// Offers every second scan to the search for staircases, and reports those that it finds.
+  /// Offers each scan to the search for staircases, and reports those that it finds.
   void seek_stairs(const std::shared_ptr<const Scan>& scan);
   /// Those that this robot found, odometry frame.
   std::vector<Staircase> known_stairs() const;

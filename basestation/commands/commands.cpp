@@ -239,6 +239,7 @@ void Commands::command_robot(std::uint64_t handle, const std::string& robot, con
   };
   if (!fleet_.robot(robot) && request.verb != verb("stop"))
     return ended({.robot = robot, .reason = Reason::unknown_robot, .text = unknown_text(fleet_)});
+  ++commanded_[robot];
   const FlowDependencies dependencies{strand_, fleet_, sender_, stick_};
   const auto start = [&](const std::shared_ptr<Flow>& flow) {
     if (const auto started = flows_.start(handle, flow); !started)
@@ -298,6 +299,7 @@ void Commands::go_over_stairs(std::uint64_t handle, const Request& request, cons
   if (goals->size() == 1 || !known(request))
     return command_robots(handle, goals->front(), request, reported_to(done));
   const std::string robot = request.robots.front();
+  const std::uint64_t command = ++commanded_[robot];
   const auto gather = std::make_shared<Gather>(request, reported_to(done));
   const auto taken = [this, gather, index = gather->expect(robot)](Answer answer) {
     answer.command = gather->request().info->name;
@@ -317,8 +319,9 @@ void Commands::go_over_stairs(std::uint64_t handle, const Request& request, cons
         ended(answer);
         taken(answer);
       },
-      [this, accepted, later, robot, far = goals->back()](const Answer& at_near_end) {
-        if (!*accepted) return;
+      [this, accepted, later, robot, command, far = goals->back()](const Answer& at_near_end) {
+        // A state from before a later command of the operator may show that it arrived.
+        if (!*accepted || commanded_[robot] != command) return;
         if (!at_near_end.accepted) return later(at_near_end);
         sender_.send({.robot = robot, .request = far}, later);
       });

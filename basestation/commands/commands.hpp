@@ -2,6 +2,7 @@
 #pragma once
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -108,6 +109,7 @@ class Commands {
   std::vector<std::shared_ptr<Gather>> stop_alls_{};
   std::uint64_t next_handle_{1};
   std::optional<Answer> last_answer_{};
+  std::map<std::string, std::uint64_t> commanded_{};  ///< Commands of this station to each robot.
   std::optional<Time> accepted_{};  ///< When a robot last accepted a command.
 };
 

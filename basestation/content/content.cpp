@@ -83,7 +83,8 @@ void Content::take(const radio::BulkPiece& sample, const wire::SampleInfo& info)
   const auto piece = contract::decode(sample);
   if (!piece) return;
   const RobotView* robot = fleet_.robot(piece->robot);
-  if (robot && robot->participant == info.sender) return pieces_.take(*piece);
+  // A station of a robot's name would end the robot's session.
+  if (robot) return robot->participant == info.sender ? pieces_.take(*piece) : void();
   const auto station = fleet_.stations().find(piece->robot);
   if (station == fleet_.stations().end() || station->second.participant != info.sender) return;
   from_station_ = station->second.id;

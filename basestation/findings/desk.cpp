@@ -38,7 +38,7 @@ Result<void> FindingDesk::hear_station(const std::string& station, const finding
   auto piece = findings::decode_piece(bytes);
   if (!piece) return piece.error();
   if (piece->robot != station) return {Reason::malformed, "findings of another station"};
-  std::size_t marks = marks_of(station);
+  std::size_t marks = marks_of(station, id), of_all = marks_of_all();
   for (const findings::Finding& finding : piece->findings) {
     const auto known = finding_store_.all().find(finding.key);
     const bool is_new = known == finding_store_.all().end();
@@ -46,17 +46,24 @@ Result<void> FindingDesk::hear_station(const std::string& station, const finding
         (!is_new && findings::marked_by(known->second) != id))
       return {Reason::malformed, "what is no mark of that station"};
     marks += is_new ? 1 : 0;
+    of_all += is_new ? 1 : 0;
   }
   if (marks > kMaxMarks) return {Reason::queue_full, "no room for more marks of that station"};
+  if (of_all > kMarksOfAll) return {Reason::queue_full, "no room for more marks of other stations"};
   return take(std::move(*piece), std::move(stored));
 }
 
-std::size_t FindingDesk::marks_of(const std::string& station) const {
+std::size_t FindingDesk::marks_of(const std::string& station, const findings::Owner& id) const {
   std::size_t count = 0;
   for (auto at = finding_store_.all().lower_bound({station, 0});
        at != finding_store_.all().end() && at->first.robot == station; ++at)
-    count += findings::marked_by(at->second) ? 1 : 0;
+    count += findings::marked_by(at->second) == id ? 1 : 0;
   return count;
+}
+
+std::size_t FindingDesk::marks_of_all() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      finding_store_.all(), [](const auto& entry) { return findings::marked_by(entry.second).has_value(); }));
 }
 
 Result<void> FindingDesk::take(findings::FindingPiece piece, std::function<void()> stored) {

@@ -28,6 +28,7 @@ struct DeskParams {
 class FindingDesk {
  public:
   static constexpr std::size_t kMaxMarks = 512;   ///< Of one station; withdrawn ones, too.
+  static constexpr std::size_t kMarksOfAll = 2048;  ///< The rest of the room is for what robots find.
   static constexpr std::size_t kMaxPieces = 256;  ///< That wait for the disk; then the oldest is forgotten.
   struct Outputs {
     std::function<void(const findings::Finding&)> found{};  ///< Called with a new finding.
@@ -56,12 +57,12 @@ class FindingDesk {
 
   /// Takes a piece with marks of another station, genuine or not. `station`, `id`: whose participant sent it.
   /// `stored` as of hear(). Errors: wrong_protocol, malformed (also: what is no mark of that station),
-  /// queue_full (also: more than kMaxMarks of one station).
+  /// queue_full (also: more than kMaxMarks of one station, or kMarksOfAll).
   Result<void> hear_station(const std::string& station, const findings::Owner& id,
                             std::span<const std::uint8_t> piece, std::function<void()> stored);
 
   /// Number of the marks of a station; withdrawn ones, too.
-  std::size_t marks_of(const std::string& station) const;
+  std::size_t marks_of(const std::string& station, const findings::Owner& id) const;
   /// Whether a finding is on disk in its newest revision.
   bool is_stored(const findings::Key& key) const { return finding_store_.is_stored(key); }
   const std::map<findings::Key, findings::Finding>& all() const { return finding_store_.all(); }
@@ -74,6 +75,7 @@ class FindingDesk {
     std::function<void()> stored{};
   };
   bool touches_mark(const findings::Finding& finding) const;
+  std::size_t marks_of_all() const;
   /// Takes all findings of a piece that was checked.
   Result<void> take(findings::FindingPiece piece, std::function<void()> stored);
   /// Stores a finding and adds it to what the piece waits for. Returns false if there is no room.

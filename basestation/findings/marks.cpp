@@ -31,7 +31,7 @@ Result<void> Marks::add(const Mark& mark, Done done) {
                             .data = findings::encode_mark()};
   if (mark.text.size() > findings::Finding::kText) return wrong_mark("the text has more than 128 bytes");
   if (mark.kind == findings::kStairs) return wrong_mark("staircases are measured by robots");
-  if (desk_.marks_of(station_) >= kMaxMarks)
+  if (desk_.marks_of(station_, id_) >= kMaxMarks)
     return {Reason::queue_full, "this station has " + std::to_string(kMaxMarks) + " marks already"};
   do {
     finding.key = key_of(random_.next());

@@ -75,7 +75,8 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
     return false;
   }
   bool complete = true;
-  robots_.at(robot).owners[perception::owner_of(piece.key.start)] = ++direct_parts_;
+  if (const std::uint32_t owner = perception::owner_of(piece.key.start); owner != 0)
+    robots_.at(robot).owners[owner] = ++direct_parts_;
   for (const perception::BlockUpdate& update : piece.blocks) {
     const auto known = into->blocks.find(update.block.index);
     if (known == into->blocks.end()) {
@@ -107,6 +108,18 @@ bool ChunkStore::take(const std::string& robot, const perception::SubmapPoses& p
     }
   }
   return complete;
+}
+
+std::vector<const perception::SubmapKey*> by_age(const ChunkStore::RobotMap& robot) {
+  std::vector<std::pair<std::uint64_t, const perception::SubmapKey*>> ordered;
+  for (const auto& [key, submap] : robot.submaps) {
+    const auto heard = robot.owners.find(perception::owner_of(key.start));
+    ordered.emplace_back(heard != robot.owners.end() ? heard->second : 0, &key);
+  }
+  std::ranges::stable_sort(ordered, {}, &std::pair<std::uint64_t, const perception::SubmapKey*>::first);
+  std::vector<const perception::SubmapKey*> out;
+  for (const auto& [heard, key] : ordered) out.push_back(key);
+  return out;
 }
 
 }  // namespace adit::station

@@ -66,7 +66,7 @@ class ChunkStore {
     std::map<std::string, Carried> carriers{};  ///< By the robot that sent it.
     std::size_t carried_blocks{};               ///< Those of `blocks` that a carrier sent.
     perception::MapDigest digest{};
-    /// When each robot of this name (perception::owner_of()) sent something last itself, as a rising number.
+    /// When each robot of this name (perception::owner_of()) sent a block last itself, as a rising number.
     std::map<std::uint32_t, std::uint64_t> owners{};
   };
 
@@ -139,5 +139,9 @@ class ChunkStore {
   std::optional<Time> begun_{};  ///< The first piece of this start.
   std::uint32_t now_{};          ///< When the present piece came, as Block::received.
 };
+
+/// The submaps of a robot's name, the oldest first. Each start of a robot is later than those before on its
+/// disk; of several robots of one name the one that was heard last has the newest. Valid while the map is.
+std::vector<const perception::SubmapKey*> by_age(const ChunkStore::RobotMap& robot);
 
 }  // namespace adit::station

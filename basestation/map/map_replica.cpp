@@ -32,7 +32,10 @@ void add_pieces(const std::string& name, const ChunkStore::RobotMap& robot, bool
     add(transfer::Kind::map_poses, transfer::Kind::carried_poses, perception::encode(poses));
     poses.poses.clear();
   };
-  for (const auto& [key, submap] : robot.submaps) {
+  // In this order, so that reading them gives the same order of the robots of one name.
+  for (const perception::SubmapKey* named : by_age(robot)) {
+    const perception::SubmapKey& key = *named;
+    const ChunkStore::Submap& submap = robot.submaps.at(key);
     if (submap.T_map_submap && submap.pose_carried == carried)
       poses.poses.push_back({key, *submap.T_map_submap, submap.pose_revision});
     if (poses.poses.size() == perception::kMaxPiecePoses) add_poses();

@@ -1,32 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/map/merged_map.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace adit::station {
-namespace {
-
-/// The submaps of a robot's name, the oldest first. Each start of a robot is later than those before on its
-/// disk; of several robots of one name the one that was heard last has the newest.
-std::vector<std::pair<std::uint64_t, const perception::SubmapKey*>> by_age(const ChunkStore::RobotMap& robot) {
-  std::vector<std::pair<std::uint64_t, const perception::SubmapKey*>> out;
-  for (const auto& [key, submap] : robot.submaps) {
-    const auto heard = robot.owners.find(perception::owner_of(key.start));
-    out.emplace_back(heard != robot.owners.end() ? heard->second : 0, &key);
-  }
-  std::ranges::stable_sort(out, {}, &std::pair<std::uint64_t, const perception::SubmapKey*>::first);
-  return out;
-}
-
-}  // namespace
 
 std::vector<MapPart> parts_of(const ChunkStore& chunks, const std::string& robot) {
   std::vector<MapPart> out;
   for (const auto& [name, from] : chunks.robots()) {
     if (!robot.empty() && name != robot) continue;
     const std::size_t before = out.size();
-    for (const auto& [order, key] : by_age(from)) {
+    for (const perception::SubmapKey* key : by_age(from)) {
       const ChunkStore::Submap& submap = from.submaps.at(*key);
       if (!submap.T_map_submap || submap.blocks.empty()) continue;
       MapPart part{*submap.T_map_submap, {}, false};

@@ -18,7 +18,8 @@ std::size_t waiting_for_pose(const ChunkStore::RobotMap& robot) {
 /// The robots of this name that made the map.
 std::set<std::uint32_t> owners_of(const ChunkStore::RobotMap& robot) {
   std::set<std::uint32_t> out;
-  for (const auto& [key, submap] : robot.submaps) out.insert(perception::owner_of(key.start));
+  for (const auto& [key, submap] : robot.submaps)
+    if (const std::uint32_t owner = perception::owner_of(key.start); owner != 0) out.insert(owner);
   return out;
 }
 

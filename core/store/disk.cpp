@@ -10,7 +10,7 @@ std::string temporary(const std::string& name) { return "." + name + ".new"; }
 
 Result<void> check(const std::string& name) {
   if (valid_file_name(name)) return {};
-  return {Reason::bad_argument, "'" + name + "' is no name for a file: 1 to 64 of [A-Za-z0-9_.-]"};
+  return {Reason::bad_argument, "'" + name + "' is no name for a file: 1 to 128 of [A-Za-z0-9_.-]"};
 }
 
 }  // namespace
@@ -20,7 +20,7 @@ bool valid_file_name(std::string_view name) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '-' || c == '.';
   };
-  return !name.empty() && name.size() <= 64 && name.front() != '.' &&
+  return !name.empty() && name.size() <= 128 && name.front() != '.' &&
          std::all_of(name.begin(), name.end(), good);
 }
 

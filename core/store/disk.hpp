@@ -59,7 +59,7 @@ class Disk {
   virtual Result<void> sync_folder() = 0;
 };
 
-/// Whether a name is valid: 1 to 64 of [A-Za-z0-9_.-], not beginning with a dot.
+/// Whether a name is valid: 1 to 128 of [A-Za-z0-9_.-], not beginning with a dot.
 bool valid_file_name(std::string_view name);
 /// Whether a name is that of a temporary file of ours, which a crash can leave behind.
 bool is_temporary(std::string_view name);

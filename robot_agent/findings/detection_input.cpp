@@ -88,7 +88,10 @@ void DetectionInput::tick(const RobotPlace& place, Time now) {
     }
     const auto at = placed(next.detection, place);
     const bool frames_come = first_ && now - *first_ < kFramesCome;
-    if (!at && at.reason() == Reason::frame_unknown && frames_come) continue;
+    if (!at && at.reason() == Reason::frame_unknown && frames_come) {
+      later.push_back(std::move(next));
+      continue;
+    }
     const auto taken = at ? reporter_.take(next.detection, *at, next.message, now) : Result<void>(at.error());
     if (!taken) refuse(next.topic, taken.error());
   }

@@ -4,16 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <string_view>
 
 namespace adit::agent {
 namespace {
 
 constexpr double kLeastWeight = 0.2;  // Of a sighting in the mean: an object may move.
 
+constexpr std::string_view kScore = "score ";  // Begins a text that says nothing else.
+
 std::string score_text(double score) {
   std::array<char, 24> text{};
-  std::snprintf(text.data(), text.size(), "score %.2f", score);
-  return text.data();
+  std::snprintf(text.data(), text.size(), "%.2f", score);
+  return std::string(kScore) + text.data();
 }
 
 Eigen::Vector3d position_of(const findings::Finding& finding) {
@@ -76,7 +79,7 @@ Result<void> DetectionReporter::report(Track& track, std::uint8_t importance, Ti
   if (track.finding == 0) {
     track.finding = known(track, now);
     if (track.finding != 0) {
-      const findings::Finding& stored = findings_.finding_store().all().at({robot_, track.finding});
+      const findings::Finding& stored = findings_.finding_store().all().at(findings_.key(track.finding));
       track.reported = position_of(stored);
       track.reported_score = stored.withdrawn ? -1.0 : track.score;
     }
@@ -99,6 +102,12 @@ Result<void> DetectionReporter::report(Track& track, std::uint8_t importance, Ti
     return {};
   findings::Finding changed = finding_of(track, importance, now);
   changed.key.id = track.finding;
+  // What others reported of it stays: a name, a photo, or what another program knows.
+  const findings::Finding& before = findings_.finding_store().all().at(findings_.key(track.finding));
+  changed.importance = std::max(changed.importance, before.importance);
+  changed.data = before.data;
+  changed.photo = before.photo;
+  if (track.text.empty() && !before.text.starts_with(kScore)) changed.text = before.text;
   const auto updated = findings_.update(std::move(changed));
   if (updated) note();
   return updated;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "core/findings/merge_stairs.hpp"
 
@@ -49,7 +50,7 @@ void StairsTracker::combine(Track& track, const Staircase& one) {
   trim(track);
 }
 
-void StairsTracker::count(Track& track, const perception::StairsCheck& check) {
+void StairsTracker::vote_on_ends(Track& track, const perception::StairsCheck& check) {
   using Riser = perception::StairsCheck::Riser;
   const auto vote = [&](int riser, Riser seen) {
     if (seen == Riser::there) ++track.risers[riser].there;
@@ -59,7 +60,6 @@ void StairsTracker::count(Track& track, const perception::StairsCheck& check) {
   vote(track.foot, check.foot);
   vote(track.foot + track.stairs.steps - 1, check.top);
   vote(track.foot + track.stairs.steps, check.above);
-  track.gone = check.gone() ? track.gone + 1 : 0;
   trim(track);
 }
 
@@ -72,6 +72,16 @@ void StairsTracker::trim(Track& track) {
 
 void StairsTracker::take(std::span<const Staircase> seen, const Eigen::Vector3d& from, const Checks& checks) {
   ++clouds_;
+  std::set<std::uint64_t> checked;
+  for (Track& track : tracks_) {
+    const auto check = checks.find(track.id);
+    if (check == checks.end() || (track.checked_from && (from - *track.checked_from).norm() < kApart))
+      continue;
+    track.checked_from = from;
+    checked.insert(track.id);
+    // First, as the check is of the steps that were known before this cloud.
+    vote_on_ends(track, check->second);
+  }
   for (const Staircase& one : seen) {
     const auto track = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& known) {
       return findings::is_same_flight(known.stairs, one);
@@ -94,14 +104,10 @@ void StairsTracker::take(std::span<const Staircase> seen, const Eigen::Vector3d&
     }
   }
   for (Track& track : tracks_) {
-    const auto check = checks.find(track.id);
-    if (check == checks.end() || (track.checked_from && (from - *track.checked_from).norm() < kApart))
-      continue;
-    track.checked_from = from;
+    if (!checked.contains(track.id)) continue;
     // Sight of equal steps is the stronger evidence.
-    perception::StairsCheck counted = check->second;
-    if (track.seen == clouds_) counted.through = 0;
-    count(track, counted);
+    const bool gone = track.seen != clouds_ && checks.at(track.id).gone();
+    track.gone = gone ? track.gone + 1 : 0;
   }
   std::erase_if(tracks_, [this](const Track& track) {
     if (track.gone < kGone) return false;

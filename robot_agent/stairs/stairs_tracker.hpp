@@ -73,7 +73,8 @@ class StairsTracker {
     Tracked tracked() const;
   };
   static void combine(Track& track, const Staircase& one);
-  static void count(Track& track, const perception::StairsCheck& check);
+  /// Counts what a check shows of the ends that the track has now.
+  static void vote_on_ends(Track& track, const perception::StairsCheck& check);
   /// Removes the ends that were refuted.
   static void trim(Track& track);
   std::vector<Track> tracks_{};

@@ -191,7 +191,7 @@ class DetectionReporterTest : public testing::Test {
   VirtualScheduler scheduler_{1};
   std::unique_ptr<Runtime> machine_{scheduler_.machine("r1", 5s)};
   std::shared_ptr<Executor> strand_{machine_->strand("command")};
-  FindingSource source_{{.robot = "r1"}, nullptr, *strand_, nullptr, {}};
+  FindingSource source_{{.robot = "r1", .owner = {7}}, nullptr, *strand_, nullptr, {}};
   std::optional<DetectionReporter> reporter_{std::in_place, DetectionParams{}, "r1", source_};
   Time now_{10s};
   std::uint64_t message_{};
@@ -241,6 +241,22 @@ TEST_F(DetectionReporterTest, ADetectorThatWasRestartedReportsNothingTwice) {
   restart();  // The agent.
   for (int n = 0; n < 5; ++n) see({2.1}, {"3"}, "camera 3");
   EXPECT_EQ(places().size(), 1U);
+}
+
+TEST_F(DetectionReporterTest, WhatOthersReportedOfAnObjectStays) {
+  EXPECT_TRUE(source_
+                  .report({.kind = "person",
+                           .importance = 9,
+                           .position = {2.0, 0.0, 0.0},
+                           .text = "trapped, leg",
+                           .data = {1, 2, 3}})
+                  .ok());
+  for (int n = 0; n < 40; ++n) see({2.8});
+  ASSERT_EQ(source_.finding_store().all().size(), 1U);
+  const findings::Finding& found = source_.finding_store().all().begin()->second;
+  EXPECT_GT(found.position[0], 2.5) << "it is where it was seen last";
+  EXPECT_EQ(found.text, "trapped, leg");
+  EXPECT_EQ(found.data, (store::Bytes{1, 2, 3}));
 }
 
 TEST_F(DetectionReporterTest, AnIdThatIsUsedAgainFarAwayIsAnotherObject) {

@@ -15,12 +15,13 @@ TEST(Finding, ComesBackFromItsFile) {
   EXPECT_EQ(from_file(to_file(some(7))), some(7));
   Finding largest = some(std::numeric_limits<std::uint64_t>::max());
   largest.key.robot = std::string(32, 'r');
+  largest.key.owner.fill(0xab);
   largest.kind = std::string(32, 'k');
   largest.text = std::string(128, 't');
   largest.data.assign(400, 9);
   EXPECT_EQ(from_file(to_file(largest)), largest);
   EXPECT_LE(to_file(largest).size(), 1024u);
-  EXPECT_TRUE(store::valid_file_name(file_name(largest.key))) << file_name(largest.key);
+  EXPECT_TRUE(store::valid_file_name(file_name(largest.key) + ".aside")) << file_name(largest.key);
   Finding smallest = some(1);
   smallest.text.clear();
   smallest.data.clear();

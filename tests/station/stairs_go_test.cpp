@@ -98,6 +98,17 @@ TEST_F(StairsGoTest, AnotherGoalOrAStopOnTheWayToTheNearEndEndsIt) {
   EXPECT_EQ(goals(0).size(), 3U);
 }
 
+TEST_F(StairsGoTest, AnOldStateThatSaysArrivedIsFollowedByNoGoalAfterAnotherCommand) {
+  EXPECT_EQ(execute("stairs go r1 1 up").exit_code, 0);
+  run_for(1s);
+  robots_[0]->answering = [](const radio::Command&) { return std::nullopt; };
+  begin("mode r1 hold");
+  // The robot has not heard of it when it says that it arrived.
+  arrive(0);
+  run_for(5s);
+  EXPECT_EQ(goals(0).size(), 1U);
+}
+
 TEST_F(StairsGoTest, TheLogSaysWhyTheNearEndWasNotReached) {
   EXPECT_EQ(execute("stairs go r1 1 up").exit_code, 0);
   robots_[0]->behaviour.reason(static_cast<std::uint16_t>(Reason::goal_unreachable));
