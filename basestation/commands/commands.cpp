@@ -313,7 +313,8 @@ void Commands::go_over_stairs(std::uint64_t handle, const Request& request, cons
     note(answer);
   };
   const auto flow = std::make_shared<Arrival>(
-      FlowDependencies{strand_, fleet_, sender_, stick_}, RobotCommand{.robot = robot, .request = goals->front()},
+      FlowDependencies{strand_, fleet_, sender_, stick_},
+      RobotCommand{.robot = robot, .request = goals->front()},
       [accepted, taken, ended = flows_.end_drives_when_accepted(robot)](const Answer& answer) {
         *accepted = answer.accepted;
         ended(answer);

@@ -110,7 +110,7 @@ class Commands {
   std::uint64_t next_handle_{1};
   std::optional<Answer> last_answer_{};
   std::map<std::string, std::uint64_t> commanded_{};  ///< Commands of this station to each robot.
-  std::optional<Time> accepted_{};  ///< When a robot last accepted a command.
+  std::optional<Time> accepted_{};                    ///< When a robot last accepted a command.
 };
 
 }  // namespace adit::station

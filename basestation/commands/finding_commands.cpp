@@ -122,9 +122,8 @@ void FindingCommands::write_file(const Request& request, const Done& done) {
   const auto ending = std::filesystem::path(file).extension();
   if (ending != ".csv" && ending != ".geojson")
     return done(not_written({Reason::bad_argument, file + ": findings are written as .csv or .geojson"}));
-  FoundReport report =
-      findings_report(content_.desk(), content_.book(), content_.marks(),
-                                       content_.chunks(), fleet_, request.robots);
+  FoundReport report = findings_report(content_.desk(), content_.book(), content_.marks(), content_.chunks(),
+                                       fleet_, request.robots);
   const std::size_t count = report.findings.size();
   strand_.compute(
       {.name = "findings file", .modelled = 20ms, .watchdog = 60s, .pool = PoolKind::io},

@@ -25,7 +25,8 @@ Result<std::vector<command::Request>> stairs_way(const command::Request& request
     return {Reason::out_of_range, "there is no staircase of that ID; `stairs` lists them"};
   const std::string id = std::to_string(item->number);
   if (item->verdict == Verdict::rejected)
-    return {Reason::bad_argument, "staircase " + id + " is rejected; `finding " + id + " reopen` takes that back"};
+    return {Reason::bad_argument,
+            "staircase " + id + " is rejected; `finding " + id + " reopen` takes that back"};
   const std::string& robot = request.robots.front();
   const auto climber = std::ranges::find(item->fleet, robot, &Climber::robot);
   if (climber != item->fleet.end() && !climber->may)

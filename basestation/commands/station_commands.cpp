@@ -54,8 +54,8 @@ Outcome list_findings(const Request& request, const Fleet& fleet, Content& conte
         std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.first.robot == robot; });
     if (!found && !fleet.robot(robot)) return unknown_robot(request, fleet, robot);
   }
-  const FoundReport report = findings_report(content.desk(), content.book(), content.marks(), content.chunks(),
-                                             fleet, request.robots);
+  const FoundReport report = findings_report(content.desk(), content.book(), content.marks(),
+                                             content.chunks(), fleet, request.robots);
   Outcome outcome =
       done_outcome(request, findings_text(report), findings_json(report, content.desk(), content.book()));
   const std::uint64_t refused = content.pieces().refused(transfer::Kind::findings);
@@ -75,7 +75,8 @@ Outcome query_outcome(const Request& request, const QuerySubject& subject) {
   const Fleet& fleet = subject.fleet;
   if (request.verb == verb("findings")) return list_findings(request, fleet, subject.content);
   if (request.verb == verb("stairs")) {
-    const StairsReport report = stairs_report(subject.content.desk(), subject.content.book(), subject.content.chunks(), fleet);
+    const StairsReport report =
+        stairs_report(subject.content.desk(), subject.content.book(), subject.content.chunks(), fleet);
     return done_outcome(request, stairs_text(report), json_of(report));
   }
   std::vector<const RobotView*> selection;

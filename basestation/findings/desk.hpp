@@ -27,9 +27,9 @@ struct DeskParams {
 /// one: what does not fit, or cannot be written, stays with the robot.
 class FindingDesk {
  public:
-  static constexpr std::size_t kMaxMarks = 512;   ///< Of one station; withdrawn ones, too.
+  static constexpr std::size_t kMaxMarks = 512;     ///< Of one station; withdrawn ones, too.
   static constexpr std::size_t kMarksOfAll = 2048;  ///< The rest of the room is for what robots find.
-  static constexpr std::size_t kMaxPieces = 256;  ///< That wait for the disk; then the oldest is forgotten.
+  static constexpr std::size_t kMaxPieces = 256;    ///< That wait for the disk; then the oldest is forgotten.
   struct Outputs {
     std::function<void(const findings::Finding&)> found{};  ///< Called with a new finding.
     /// `code`: findings_full or store_failing, store_works.

@@ -40,7 +40,8 @@ std::string verdict_text(const FoundItem& item) {
 }  // namespace
 
 FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Marks& marks,
-                            const ChunkStore& chunks, const Fleet& fleet, const std::vector<std::string>& robots) {
+                            const ChunkStore& chunks, const Fleet& fleet,
+                            const std::vector<std::string>& robots) {
   FoundReport report;
   std::map<std::string, std::uint32_t> here;
   for (const Finding* f : chosen(desk, robots)) {

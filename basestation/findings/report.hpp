@@ -13,10 +13,11 @@
 
 namespace adit::station {
 
-/// The findings of the named robots and stations, or of all, where they are in the map now; the most important
-/// first.
+/// The findings of the named robots and stations, or of all, where they are in the map now; the most
+/// important first.
 FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Marks& marks,
-                            const ChunkStore& chunks, const Fleet& fleet, const std::vector<std::string>& robots);
+                            const ChunkStore& chunks, const Fleet& fleet,
+                            const std::vector<std::string>& robots);
 std::string findings_text(const FoundReport& report);
 /// As json_of(FoundReport), with the data and the owner of each finding.
 nlohmann::json findings_json(const FoundReport& report, const FindingDesk& desk, const FindingBook& book);

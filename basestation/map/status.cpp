@@ -76,7 +76,8 @@ std::string map_status_text(const MapReceiver& map, Time now) {
   for (const auto& [name, robot] : chunks.robots()) out += carried_text(name, robot, now);
   for (const auto& [name, robot] : chunks.robots())
     if (const std::size_t owners = owners_of(robot).size(); owners > 1)
-      out += name + ": maps of " + std::to_string(owners) + " robots of this name; the newest is that of the one heard last\n";
+      out += name + ": maps of " + std::to_string(owners) +
+             " robots of this name; the newest is that of the one heard last\n";
   const GroundArea all = ground_area(chunks, now);
   out += "all: " + fixed(all.m2, 0) + " m2, received within 10 s: " + fixed(100.0 * all.within_10s, 0) +
          " %, 1 min: " + fixed(100.0 * all.within_1min, 0) +

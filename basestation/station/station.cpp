@@ -89,7 +89,9 @@ void Station::observe() {
   };
 }
 
-StairsReport Station::stairs() const { return stairs_report(content_.desk(), content_.book(), content_.chunks(), fleet_); }
+StairsReport Station::stairs() const {
+  return stairs_report(content_.desk(), content_.book(), content_.chunks(), fleet_);
+}
 
 World Station::world() const {
   World world = world_of(fleet_, now());

@@ -126,10 +126,10 @@ inline constexpr std::array kTable{
                               coordinate("X"), coordinate("Y"), coordinate("Z", 0), kText},
                 .runs = Runs::station,
                 .summary = "mark something that you know of on the map",
-                .details =
-                    "without Z on the floor that robots saw there, else at 0; a first word of TEXT that is a number is "
-                    "Z; a text of up to 128 bytes; "
-                    "stored at this station",
+                .details = "without Z on the floor that robots saw there, else at 0; a first word of TEXT "
+                           "that is a number is "
+                           "Z; a text of up to 128 bytes; "
+                           "stored at this station",
                 .example = "finding add person 12 4.5 calls for help"},
     CommandInfo{.name = "finding remove",
                 .arguments = {Argument{.name = "remove", .type = Type::keyword}, kFinding},
@@ -157,23 +157,25 @@ inline constexpr std::array kTable{
                 .summary = "staircases that robots found, and which robots may climb them",
                 .details = "merged from all findings of kind stairs; the ID is the number of the first one",
                 .example = "stairs"},
-    CommandInfo{.name = "stairs go",
-                .arguments = {Argument{.name = "go", .type = Type::keyword}, kRobot,
-                              Argument{.name = "ID",
-                                       .type = Type::number,
-                                       .what = "the ID of a staircase",
-                                       .minimum = 1.0,
-                                       .maximum = 1e9},
-                              Argument{.name = "WAY", .type = Type::choice, .choices = "up|down"}},
-                .runs = Runs::station,
-                .danger = Danger::some,
-                .conditions = {.holder = true, .mode = "waypoint"},
-                .line = Line::steering,
-                .summary = "drive over a staircase, to the floor behind its end",
-                .details = "a robot that has not seen it itself first drives to its near end; refused for robots that "
-                           "do not climb it",
-                .example = "stairs go r1 4 up",
-                .done = "going {WAY} the stairs"},
+    CommandInfo{
+        .name = "stairs go",
+        .arguments = {Argument{.name = "go", .type = Type::keyword}, kRobot,
+                      Argument{.name = "ID",
+                               .type = Type::number,
+                               .what = "the ID of a staircase",
+                               .minimum = 1.0,
+                               .maximum = 1e9},
+                      Argument{.name = "WAY", .type = Type::choice, .choices = "up|down"}},
+        .runs = Runs::station,
+        .danger = Danger::some,
+        .conditions = {.holder = true, .mode = "waypoint"},
+        .line = Line::steering,
+        .summary = "drive over a staircase, to the floor behind its end",
+        .details =
+            "a robot that has not seen it itself first drives to its near end; refused for robots that "
+            "do not climb it",
+        .example = "stairs go r1 4 up",
+        .done = "going {WAY} the stairs"},
     CommandInfo{
         .name = "map save",
         .arguments = {Argument{.name = "save", .type = Type::keyword}, kFile},

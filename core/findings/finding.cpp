@@ -92,7 +92,8 @@ std::string id_text(std::uint64_t id) {
 
 std::string owner_text(const Owner& owner) {
   std::string text;
-  for (const std::uint8_t byte : owner) (text += "0123456789abcdef"[byte >> 4]) += "0123456789abcdef"[byte & 15];
+  for (const std::uint8_t byte : owner)
+    (text += "0123456789abcdef"[byte >> 4]) += "0123456789abcdef"[byte & 15];
   return text;
 }
 

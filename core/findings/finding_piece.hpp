@@ -23,17 +23,18 @@ struct FindingPiece {
   bool operator==(const FindingPiece&) const = default;
 };
 
-/// Encodes a piece of 1 to kMaxFindings valid findings of its robot: version, robot, owner, stored, overflowed,
-/// the findings, and a checksum (CRC-32C), so that a damaged piece is refused. Written as version 3.
+/// Encodes a piece of 1 to kMaxFindings valid findings of its robot: version, robot, owner, stored,
+/// overflowed, the findings, and a checksum (CRC-32C), so that a damaged piece is refused. Written as
+/// version 3.
 store::Bytes encode(const FindingPiece& piece);
 /// Bytes of an encoded piece without its findings.
 std::size_t encoded_head(const std::string& robot);
 /// Bytes of one finding in a piece, at most 655: each finding fits alone into every piece.
 std::size_t encoded_size(const Finding& finding);
 
-/// Decodes a piece of version 1 (revisions are 0), 2 (no owner) or 3, from anyone. Reason::wrong_protocol for another
-/// version, malformed for everything else that is wrong: truncated, damaged, too long, bytes behind the end,
-/// a finding that is not valid.
+/// Decodes a piece of version 1 (revisions are 0), 2 (no owner) or 3, from anyone. Reason::wrong_protocol for
+/// another version, malformed for everything else that is wrong: truncated, damaged, too long, bytes behind
+/// the end, a finding that is not valid.
 Result<FindingPiece> decode_piece(std::span<const std::uint8_t> bytes);
 
 }  // namespace adit::findings

@@ -65,12 +65,13 @@ class FindingSource final : public transfer::Source {
 
   /// Loads from disk the findings and the stations that have them.
   findings::LoadReport load();
-  /// Adds a finding and sets its robot, owner and revision; id 0 is replaced by a new id. An existing id leaves what
-  /// is there. Errors: bad_argument, queue_full if there is no room and no less important finding.
+  /// Adds a finding and sets its robot, owner and revision; id 0 is replaced by a new id. An existing id
+  /// leaves what is there. Errors: bad_argument, queue_full if there is no room and no less important
+  /// finding.
   Result<std::uint64_t> report(findings::Finding finding);
-  /// Replaces the content of an existing finding and sets its robot, owner and revision. It waits in memory for its
-  /// revision, kRefinement at most while the disk works: a crash loses that much. A withdrawn finding comes
-  /// back. Errors: bad_argument (also: no such id), out_of_range when there is no higher revision.
+  /// Replaces the content of an existing finding and sets its robot, owner and revision. It waits in memory
+  /// for its revision, kRefinement at most while the disk works: a crash loses that much. A withdrawn finding
+  /// comes back. Errors: bad_argument (also: no such id), out_of_range when there is no higher revision.
   Result<void> update(findings::Finding finding);
   /// Marks a finding as withdrawn: stations keep it and list it so. Errors: as of update().
   Result<void> withdraw(std::uint64_t id);

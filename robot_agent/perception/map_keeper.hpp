@@ -33,10 +33,10 @@ struct MapKeeperParams {
 
 /// A place that moves with a submap.
 struct PlaceInSubmap {
-  std::uint64_t start{};           ///< Of the submap's key.
-  std::uint32_t index{};           ///< Of the submap's key.
+  std::uint64_t start{};            ///< Of the submap's key.
+  std::uint32_t index{};            ///< Of the submap's key.
   Eigen::Vector3d offset{0, 0, 0};  ///< Submap frame, m.
-  double yaw{};                    ///< Of the submap in the map frame now, rad.
+  double yaw{};                     ///< Of the submap in the map frame now, rad.
 };
 
 /// The map of a robot beside the open submap's grid: the submaps, their blocks at 0.2 m, and what each

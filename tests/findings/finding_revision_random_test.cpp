@@ -150,8 +150,7 @@ std::uint64_t revision_seeds() {
   return wanted == nullptr ? 24 : std::strtoull(wanted, nullptr, 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, FindingRevisions,
-                         testing::Range<std::uint64_t>(1, 1 + revision_seeds()));
+INSTANTIATE_TEST_SUITE_P(Seeds, FindingRevisions, testing::Range<std::uint64_t>(1, 1 + revision_seeds()));
 
 }  // namespace
 }  // namespace adit::agent

@@ -60,7 +60,9 @@ Finding owned() {
   return f;
 }
 
-TEST(Finding, ComesBackFromItsFileWithOwnerAnchorAndPhoto) { EXPECT_EQ(from_file(to_file(owned())), owned()); }
+TEST(Finding, ComesBackFromItsFileWithOwnerAnchorAndPhoto) {
+  EXPECT_EQ(from_file(to_file(owned())), owned());
+}
 
 TEST(Finding, HasTheNameOfItsOwnerInItsFile) {
   EXPECT_EQ(file_name(owned().key), "finding-r1-0000000000000007-01112131415161718191a1b1c1d1e1f1");

@@ -22,7 +22,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // What was accepted is valid, and comes back from its bytes.
   if (piece->findings.empty() || piece->findings.size() > findings::FindingPiece::kMaxFindings) std::abort();
   for (const findings::Finding& finding : piece->findings)
-    if (!valid(finding) || finding.key.robot != piece->robot || finding.key.owner != piece->owner) std::abort();
+    if (!valid(finding) || finding.key.robot != piece->robot || finding.key.owner != piece->owner)
+      std::abort();
   const auto back = findings::decode_piece(findings::encode(*piece));
   if (!back || *back != *piece) std::abort();
   return 0;

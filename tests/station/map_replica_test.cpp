@@ -354,13 +354,15 @@ TEST_F(MapReplicaTest, RobotsOfEarlierMissionsMakeRoomForThoseThatAreHeard) {
 
 TEST_F(MapReplicaTest, TheRobotOfANameThatWasHeardLastHasTheNewestMapAfterARestart) {
   // The first was started five times; then another one, with a new disk, takes its place.
-  const std::uint64_t first = perception::map_start(5, 0xaaaa, 1), second = perception::map_start(1, 0xbbbb, 1);
+  const std::uint64_t first = perception::map_start(5, 0xaaaa, 1),
+                      second = perception::map_start(1, 0xbbbb, 1);
   for (const std::uint64_t map : {first, second})
-    EXPECT_TRUE(take(transfer::Kind::map_blocks,
-                     perception::pack({"r1", map, 0}, std::vector<perception::BlockUpdate>{{{{0, 0, 0}, 3, 1}, 1}},
-                                      transfer::kMaxPieceBytes)
-                         .bytes)
-                    .ok());
+    EXPECT_TRUE(
+        take(transfer::Kind::map_blocks,
+             perception::pack({"r1", map, 0}, std::vector<perception::BlockUpdate>{{{{0, 0, 0}, 3, 1}, 1}},
+                              transfer::kMaxPieceBytes)
+                 .bytes)
+            .ok());
   EXPECT_EQ(by_age(replica->chunks().robots().at("r1")).back()->start, second);
   // As after the file was written anew, and read by the next start.
   ChunkStore again;

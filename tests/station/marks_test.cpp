@@ -137,7 +137,8 @@ TEST_F(MarksTest, OfAStationAreNotReplacedByARobotOfItsName) {
   findings::Finding robots = desk.all().begin()->second;
   robots.revision = 9;
   robots.data.clear();
-  EXPECT_EQ(desk.hear("op1", findings::encode({"op1", 1, 0, {robots}, kId}), [] {}).reason(), Reason::malformed);
+  EXPECT_EQ(desk.hear("op1", findings::encode({"op1", 1, 0, {robots}, kId}), [] {}).reason(),
+            Reason::malformed);
   EXPECT_TRUE(marks.is_own(desk.all().begin()->second));
 }
 

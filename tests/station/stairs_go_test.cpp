@@ -23,13 +23,14 @@ class StairsGoTest : public StationTest {
     robots_[0]->describe(1.0F, 1.0F, true, kStep);
     robots_[1]->describe(1.0F, 1.0F, true, kStep);
     robots_[2]->describe(1.0F, 1.0F, true);
-    const Staircase stairs{.foot = {4, 5, 0.1},
-                           .heading = M_PI / 2,
-                           .rise = 0.2,
-                           .run = 0.3,
-                           .width = 1.2,
-                           .steps = 6,
-                           .sigma = {.place = 0.02, .heading = 0.01, .rise = 0.004, .run = 0.005, .width = 0.05}};
+    const Staircase stairs{
+        .foot = {4, 5, 0.1},
+        .heading = M_PI / 2,
+        .rise = 0.2,
+        .run = 0.3,
+        .width = 1.2,
+        .steps = 6,
+        .sigma = {.place = 0.02, .heading = 0.01, .rise = 0.004, .run = 0.005, .width = 0.05}};
     radio::BulkPiece piece;
     piece.robot("r2");
     piece.session(3);
