@@ -70,7 +70,7 @@ TEST_F(StairsTest, WithoutAnyTheReportSaysSo) {
 TEST_F(StairsTest, MoveWithTheSubmapInWhichTheyWereSeen) {
   const Staircase stairs = flight_to_the_north(4);
   const perception::SubmapKey key{"r1", 77, 3};
-  const Pose3 before = Pose3::level({1, 2, 0.5}, 0.25), after = Pose3::level({1, 2.5, -0.1}, 0.5);
+  const Pose3 before = Pose3::level({1, 2, 0.25}, 0.5), after = Pose3::level({1, 2.5, 0.5}, -0.1);
   const Eigen::Vector3f offset = (before.inverse() * stairs.foot).cast<float>();
   find({.key = {"r1", 1},
         .kind = findings::kStairs,
