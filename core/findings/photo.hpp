@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <stop_token>
+
+#include "core/result/result.hpp"
+#include "core/store/state_file.hpp"
+
+namespace adit::findings {
+
+/// A photo of a finding: a JPEG that was decoded without a warning, and its thumbnail.
+struct Photo {
+  static constexpr std::size_t kMaxBytes = 256 << 10;      ///< Of the picture.
+  static constexpr std::size_t kMaxThumbnail = 2048;       ///< Bytes.
+  static constexpr std::size_t kMaxInput = 8 << 20;        ///< Of a JPEG that is decoded at all, bytes.
+  static constexpr std::uint32_t kMaxSide = 10'000;        ///< Of the same, pixels.
+  static constexpr std::uint64_t kMaxPixels = 40'000'000;  ///< Of the same.
+  static constexpr int kMaxScans = 32;                     ///< Of a progressive JPEG; cameras write 10.
+  static constexpr std::uint32_t kSide = 1600;  ///< Longer side of a picture that is recompressed, pixels.
+
+  store::Bytes picture{};    ///< JPEG, at most kMaxBytes.
+  store::Bytes thumbnail{};  ///< JPEG, at most kMaxThumbnail bytes.
+  std::uint64_t hash{};      ///< Of the picture's bytes.
+};
+
+/// Checks a JPEG by decoding it, scales and recompresses it where it has more than Photo::kMaxBytes, and
+/// makes its thumbnail. Takes up to a second of one processor and 60 MB: run it as compute work.
+///
+/// Errors: malformed (no JPEG, truncated, damaged, CMYK), out_of_range (beyond the bounds of Photo),
+/// cancelled.
+Result<Photo> make_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop = {});
+
+/// Hash of a picture's bytes, FNV-1a; it detects damage, not forgery.
+std::uint64_t photo_hash(std::span<const std::uint8_t> bytes);
+
+}  // namespace adit::findings
