@@ -101,6 +101,20 @@ Decoded decode_into(Pixels& pixels, std::span<const std::uint8_t> jpeg, const st
   return outcome;
 }
 
+Decoded read_header(std::span<const std::uint8_t> jpeg) {
+  jpeg_decompress_struct decoder{};
+  JpegErrors errors{};
+  decoder.err = quiet_errors(errors);
+  if (setjmp(errors.jump) != 0) {
+    jpeg_destroy_decompress(&decoder);
+    return Decoded::damaged;
+  }
+  jpeg_create_decompress(&decoder);
+  const Decoded outcome = begin_decoder(decoder, jpeg);
+  jpeg_destroy_decompress(&decoder);
+  return outcome;
+}
+
 /// Encodes pixels. The buffer is the library's: its owner frees it, also after a failure.
 bool encode_into(unsigned char** buffer, unsigned long* size, const Pixels& pixels, int quality) {
   jpeg_compress_struct encoder{};
@@ -194,6 +208,10 @@ Error refusal_of(Decoded outcome, std::size_t bytes) {
                                  " bytes is no whole JPEG: truncated, damaged, or of another format"};
 }
 
+bool is_jpeg(std::span<const std::uint8_t> bytes) {
+  return bytes.size() >= 4 && bytes[0] == 0xff && bytes[1] == 0xd8;
+}
+
 }  // namespace
 
 std::uint64_t photo_hash(std::span<const std::uint8_t> bytes) {
@@ -202,11 +220,17 @@ std::uint64_t photo_hash(std::span<const std::uint8_t> bytes) {
   return hash;
 }
 
+Result<void> check_photo_header(std::span<const std::uint8_t> jpeg) {
+  const Decoded outcome = is_jpeg(jpeg) ? read_header(jpeg) : Decoded::damaged;
+  if (outcome != Decoded::good) return refusal_of(outcome, jpeg.size());
+  return {};
+}
+
 Result<Photo> make_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop) {
   if (jpeg.size() > Photo::kMaxInput)
     return Error{Reason::out_of_range, "a photo has " + std::to_string(jpeg.size() / 1024) + " kB, at most " +
                                            std::to_string(Photo::kMaxInput / 1024) + " are read"};
-  if (jpeg.size() < 4 || jpeg[0] != 0xff || jpeg[1] != 0xd8) return refusal_of(Decoded::damaged, jpeg.size());
+  if (!is_jpeg(jpeg)) return refusal_of(Decoded::damaged, jpeg.size());
   Pixels pixels;
   if (const Decoded outcome = decode_into(pixels, jpeg, stop); outcome != Decoded::good)
     return refusal_of(outcome, jpeg.size());

@@ -31,6 +31,10 @@ struct Photo {
 /// cancelled.
 Result<Photo> make_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop = {});
 
+/// Checks the header of a JPEG alone: that it is one, and within the bounds of Photo. It costs little; the
+/// rest of the JPEG may be damaged. Errors: as of make_photo().
+Result<void> check_photo_header(std::span<const std::uint8_t> jpeg);
+
 /// Hash of a picture's bytes, FNV-1a; it detects damage, not forgery.
 std::uint64_t photo_hash(std::span<const std::uint8_t> bytes);
 

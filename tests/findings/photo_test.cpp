@@ -3,54 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <cstdlib>
-#include <functional>
 
-#include <jpeglib.h>
-
-#include "core/time/random.hpp"
+#include "tests/findings/drawn_photo.hpp"
 
 namespace adit::findings {
 namespace {
-
-struct Drawn {
-  std::uint32_t width{640}, height{480};
-  int quality{90};
-  bool progressive{false}, grey{false}, cmyk{false};
-  bool noise{false};  ///< Hardly compressible.
-};
-
-store::Bytes draw(const Drawn& how) {
-  jpeg_compress_struct encoder{};
-  jpeg_error_mgr errors{};
-  encoder.err = jpeg_std_error(&errors);
-  jpeg_create_compress(&encoder);
-  unsigned char* buffer = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&encoder, &buffer, &size);
-  encoder.image_width = how.width;
-  encoder.image_height = how.height;
-  encoder.input_components = how.grey ? 1 : how.cmyk ? 4 : 3;
-  encoder.in_color_space = how.grey ? JCS_GRAYSCALE : how.cmyk ? JCS_CMYK : JCS_RGB;
-  jpeg_set_defaults(&encoder);
-  jpeg_set_quality(&encoder, how.quality, TRUE);
-  if (how.progressive) jpeg_simple_progression(&encoder);
-  jpeg_start_compress(&encoder, TRUE);
-  Random random(1);
-  std::vector<JSAMPLE> row(std::size_t{how.width} * static_cast<std::size_t>(encoder.input_components));
-  while (encoder.next_scanline < encoder.image_height) {
-    for (std::size_t i = 0; i < row.size(); ++i)
-      row[i] = static_cast<JSAMPLE>(how.noise ? random.next() : i / 8 + encoder.next_scanline);
-    JSAMPROW at = row.data();
-    jpeg_write_scanlines(&encoder, &at, 1);
-  }
-  jpeg_finish_compress(&encoder);
-  jpeg_destroy_compress(&encoder);
-  store::Bytes out(buffer, buffer + size);
-  std::free(buffer);
-  return out;
-}
 
 TEST(Photo, ASmallOneIsStoredAsItIs) {
   const store::Bytes jpeg = draw({});
