@@ -18,6 +18,7 @@ enum class Kind : std::uint8_t {
   findings = 3,
   carried_blocks = 4,  ///< Of another robot's map than the sender's.
   carried_poses = 5,
+  photos = 6,
 };
 
 constexpr bool is_carried(std::uint8_t kind) {
