@@ -66,6 +66,7 @@ struct AgentParams {
   bool carry_maps{false};     ///< Carries maps of other robots on to stations.
   std::size_t findings{512};  ///< Maximum number of stored findings, [1, 65536].
   DetectionParams detections{};
+  ReportParams reports{};
   SupervisionParams supervision{};
   /// Requests a restart of the agent's process, because a component could not be restarted. Called once, on a
   /// strand of the agent; empty: the agent keeps running and sends zero to the driver.

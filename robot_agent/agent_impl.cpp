@@ -57,6 +57,7 @@ Agent::Impl::~Impl() {
   if (context && context->radio) context->radio->close();
   if (context && context->driver) context->driver->close();
   if (context && context->detections) context->detections->close();
+  if (context && context->reports) context->reports->close();
 }
 
 void Agent::Impl::end_disk() {
@@ -64,6 +65,7 @@ void Agent::Impl::end_disk() {
   if (context && context->driver) context->driver->write({});  // The disk must not delay the zero velocity.
   if (context && context->keeper) context->keeper->flush();
   if (context && context->findings) context->findings->flush();
+  if (context && context->photos) context->photos->flush();
   if (context && context->map) context->map->flush();
   disk_strand->drain(kDiskDrain);  // A disk that does not answer must not prevent the end of the process.
 }
@@ -166,6 +168,13 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (const std::string lost = e.findings->load().text(); !lost.empty())
     e.notifier->to_all(Severity::error, "findings_damaged", Reason::cannot_read, params.name + ": " + lost);
 
+  e.photos = std::make_unique<findings::PhotoStore>(findings::PhotoStoreParams{}, params.disk, strand,
+                                                    disk_strand, photos_outputs());
+  if (const std::string lost = e.photos->load(); !lost.empty())
+    e.notifier->to_all(Severity::error, "findings_damaged", Reason::cannot_read, params.name + ": " + lost);
+  e.photo_sources = std::make_unique<findings::PhotoSources>(*e.photos, params.disk, strand, disk_strand);
+  e.photo_sources->ledger.load();
+
   if (params.perception != PerceptionLevel::off) {
     e.place.keyframes = std::make_unique<KeyframeStore>(params.disk, strand, disk_strand);
     e.place.keyframes->load();
@@ -214,6 +223,11 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
           [&e, &strand](const InputFault& fault) { e.inputs->report(fault, strand.now()); }});
   if (auto opened = e.detections->open(io_of(*command.slot(), robot)); !opened) return opened.error();
 
+  e.reports = std::make_unique<ReportInput>(
+      params.reports, params.platform, e.static_frames, *e.findings, *e.photos, strand,
+      [&e, &strand](const InputFault& fault) { e.inputs->report(fault, strand.now()); });
+  if (auto opened = e.reports->open(io_of(*command.slot(), robot)); !opened) return opened.error();
+
   const bool routes_it = params.platform.router != "none";
   const bool maps_it = params.perception == PerceptionLevel::slam;
   e.stairs = params.perception != PerceptionLevel::off
@@ -225,7 +239,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (maps_it) open_map();
   if (params.carry_maps) e.carrier = std::make_unique<Carrier>(Random(params.seed).fork(kCarrySalt).next());
   e.content = std::make_unique<ContentSender>(Random(params.seed).fork(kContentSalt).next(), *e.findings,
-                                              e.map.get(), e.carrier.get());
+                                              *e.photo_sources, e.map.get(), e.carrier.get());
   const Task send_pieces = [&e] {
     if (e.command_component) e.command_component->send_pieces();
   };
@@ -349,6 +363,18 @@ FindingSource::Outputs Agent::Impl::findings_outputs() {
                    text);
           },
           [this](const std::array<double, 3>& place) { return anchor_of(place); }};
+}
+
+findings::PhotoStore::Outputs Agent::Impl::photos_outputs() {
+  return {[this](bool failing, const std::string& text) {
+            context->notifier->to_all(failing ? Severity::error : Severity::info,
+                                      failing ? "store_failing" : "store_works", Reason::none,
+                                      params.name + ": " + text);
+          },
+          [this](const std::string& text) {
+            context->notifier->to_all(Severity::warning, "findings_full", Reason::none,
+                                      params.name + ": " + text);
+          }};
 }
 
 std::optional<findings::Anchor> Agent::Impl::anchor_of(const std::array<double, 3>& place) const {

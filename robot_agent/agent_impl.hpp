@@ -49,6 +49,7 @@ struct Agent::Impl {
   StateKeeper::Outputs keeper_outputs();
   std::shared_ptr<const nav::PlannerLibrary> library();
   FindingSource::Outputs findings_outputs();
+  findings::PhotoStore::Outputs photos_outputs();
   /// Where a place (map frame, m) is in this robot's newest submap.
   std::optional<findings::Anchor> anchor_of(const std::array<double, 3>& place) const;
   std::function<void(const contract::BulkPiece&, const wire::ParticipantId&)> pieces_to_carry();

@@ -69,7 +69,8 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
       telemetry_({*context.radio, *context.wire, context.rate, *context.driver, *context.watch, frames_,
                   commands_, behaviour_}),
       rivals_(now()),
-      topics_(used_topics(params.platform, params.velocity, params.detections.topics)) {}
+      topics_(
+          used_topics(params.platform, params.velocity, params.detections.topics, params.reports.topics)) {}
 
 void Agent::CommandComponent::battery(float charge) {
   protect([&] { safeguards_.battery(charge, now()); });
@@ -207,7 +208,9 @@ void Agent::CommandComponent::beat() {
   const Time at = now();
   watch_driver();
   localiser_.watch(now());
-  context_.detections->tick({frames_, localiser_.T_odom_driver(), localiser_.unknown_because(at)}, at);
+  const RobotPlace place{frames_, localiser_.T_odom_driver(), localiser_.unknown_because(at)};
+  context_.detections->tick(place, at);
+  context_.reports->tick(place, at);
   watch_namesakes(at);
   listen_first(at);
   convoy_.tick(at);
@@ -248,6 +251,7 @@ void Agent::CommandComponent::watch_driver() {
 void Agent::CommandComponent::watch_topics(Time at) {
   context_.driver->look();
   context_.detections->look(*context_.robot_wire);
+  context_.reports->look(*context_.robot_wire);
   bool velocities = false;
   for (const InputFault& clash : type_clashes(*context_.robot_wire, topics_)) {
     context_.inputs->report(clash, at);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/component/component.hpp"
+#include "core/findings/photo_source.hpp"
 #include "core/supervisor/unit.hpp"
 #include "core/wire/link/rate_control.hpp"
 #include "robot_agent/agent.hpp"
@@ -19,6 +20,7 @@
 #include "robot_agent/discovery/peer_table.hpp"
 #include "robot_agent/findings/detection_input.hpp"
 #include "robot_agent/findings/finding_source.hpp"
+#include "robot_agent/findings/report_input.hpp"
 #include "robot_agent/motion/driver.hpp"
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/grip_watch.hpp"
@@ -63,7 +65,10 @@ struct Agent::Context {
   Restored restored{};                    ///< State at the start, or when the component was restarted.
   std::unique_ptr<StateKeeper> keeper{};  ///< The component's last state, in memory and on the disk.
   std::unique_ptr<FindingSource> findings{};
+  std::unique_ptr<findings::PhotoStore> photos{};
+  std::unique_ptr<findings::PhotoSources> photo_sources{};
   std::unique_ptr<DetectionInput> detections{};
+  std::unique_ptr<ReportInput> reports{};
   PlanService planner{"planner", 2};        ///< The services are callable from any thread.
   std::unique_ptr<RouteServices> router{};  ///< Null: this robot has no router.
   ScanService scans{"scan", 4};

@@ -45,7 +45,8 @@ inline Qos qos_of(QosClass qos) {
 /// writer; sensor publishers are often best effort and match only a best-effort reader. Our writers are
 /// therefore reliable and our readers best effort, so that they match all of them; but a reader of a latched
 /// topic is reliable, because a best-effort one gets no history. Publishers of these are reliable, as
-/// latching needs it.
+/// latching needs it. A reader of class bulk is reliable, too: of a large message in many fragments, one that
+/// is lost would lose it all.
 inline bool is_ros2(const TopicInfo& topic) { return std::string_view(topic.name).starts_with("rt/"); }
 
 inline Qos writer_qos(const TopicInfo& topic) {
@@ -55,7 +56,7 @@ inline Qos writer_qos(const TopicInfo& topic) {
 }
 inline Qos reader_qos(const TopicInfo& topic) {
   Qos qos = qos_of(topic.qos);
-  if (is_ros2(topic)) qos.reliable = qos.transient_local;
+  if (is_ros2(topic)) qos.reliable = qos.transient_local || topic.qos == QosClass::bulk;
   return qos;
 }
 

@@ -40,6 +40,10 @@ namespace vision_msgs::msg {
 class Detection3DArray;
 }
 
+namespace visualization_msgs::msg {
+class Marker;
+}
+
 namespace adit::wire::topics {
 
 inline constexpr bool kKeyed = true;
@@ -121,5 +125,9 @@ inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{
 /// Objects that programs of the robot detect.
 inline constexpr Topic<vision_msgs::msg::Detection3DArray> kDetections{
     {"rt/detections", "vision_msgs::msg::dds_::Detection3DArray_", QosClass::sensor, 4, kUnkeyed, 1 << 20}};
+/// What programs of the robot report, with a text, a place and a photo. A message may be far larger than a
+/// photo that is used, so that a photo that is too large costs its finding only the photo.
+inline constexpr Topic<visualization_msgs::msg::Marker> kReports{
+    {"rt/reports", "visualization_msgs::msg::dds_::Marker_", QosClass::bulk, 8, kUnkeyed, 24 << 20}};
 
 }  // namespace adit::wire::topics

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/findings/photo_source.hpp"
 #include "core/transfer/sender.hpp"
 #include "robot_agent/carry/carrier.hpp"
 #include "robot_agent/findings/finding_source.hpp"
@@ -10,14 +11,16 @@
 
 namespace adit::agent {
 
-/// The one sender of what a robot has for the stations in class `bulk`: its findings, then the poses of its
-/// map, then the map's blocks, then the maps that it carries. Where no station is heard, its own map goes to
-/// carriers. It belongs to the agent's context and runs on the command strand.
+/// The one sender of what a robot has for the stations in class `bulk`: its findings, then the thumbnails of
+/// their photos, the poses of its map, the map's blocks, the maps that it carries, and last the photos. Where
+/// no station is heard, its own map goes to carriers. It belongs to the agent's context and runs on the
+/// command strand.
 class ContentSender {
  public:
   /// `map` null: this robot makes none. `carrier` null: it carries none. All must outlive this. `seed`: of
   /// the session, another one at each start.
-  ContentSender(std::uint64_t seed, FindingSource& findings, MapKeeper* map, Carrier* carrier = nullptr);
+  ContentSender(std::uint64_t seed, FindingSource& findings, findings::PhotoSources& photos, MapKeeper* map,
+                Carrier* carrier = nullptr);
 
   /// Takes what a station or a carrier has of this robot's pieces; only the peer itself may say that.
   void acknowledged(const transfer::Ack& ack, Time now);
@@ -29,6 +32,7 @@ class ContentSender {
 
  private:
   FindingSource& findings_;
+  findings::PhotoSources& photos_;
   MapKeeper* map_;
   Carrier* carrier_;
   transfer::Sender sender_;

@@ -25,6 +25,15 @@ struct DetectionParams {
   }
 };
 
+/// The key `reports` of a robot's file: findings that programs on the robot report with a text and a photo.
+struct ReportParams {
+  static constexpr std::size_t kMaxTopics = 4;
+
+  std::vector<std::string> topics{"reports"};  ///< Without a slash in front.
+  std::map<std::string, std::uint8_t>
+      importance{};  ///< By kind; 0: it is ignored. Of others, that of a mark.
+};
+
 /// An object in one message of a program on the robot.
 struct Detection {
   std::string source{};  ///< The topic and the participant that sent it.

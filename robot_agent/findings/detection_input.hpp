@@ -3,18 +3,15 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "core/config/platform.hpp"
 #include "core/wire/component_io.hpp"
 #include "robot_agent/findings/detection.hpp"
 #include "robot_agent/findings/detection_reporter.hpp"
-#include "robot_agent/motion/frames.hpp"
-#include "robot_agent/motion/input_faults.hpp"
-#include "robot_agent/motion/static_frames.hpp"
+#include "robot_agent/findings/object_placer.hpp"
+#include "robot_agent/findings/topic_refusals.hpp"
 
 namespace vision_msgs::msg {
 class Detection3DArray;
@@ -22,23 +19,13 @@ class Detection3DArray;
 
 namespace adit::agent {
 
-/// Where the robot is, for places of objects.
-struct RobotPlace {
-  const Frames& frames;
-  Pose3 T_odom_driver{};         ///< See PoseCorrection.
-  Reason unknown{Reason::none};  ///< Why the pose must not be used.
-};
-
 /// Reads the objects that programs on the robot detect, from the robot domain. Each waits until the odometry
 /// is as new as its stamp, is placed in the map, and goes to the DetectionReporter. What cannot be used is
 /// refused with its reason and counted by topic. Outlives the command component and runs on its strand.
 class DetectionInput {
  public:
   static constexpr std::size_t kWaiting = 1024;  ///< Objects that wait for odometry.
-  static constexpr Duration kPatience = 500ms;   ///< For odometry as new as a stamp.
   static constexpr Duration kFramesCome = 3s;    ///< After the first message, /tf_static may still come.
-  static constexpr std::uint64_t kAhead =
-      500'000'000;  ///< A stamp that is newer than the odometry by more, ns.
 
   struct Outputs {
     std::function<void(const InputFault&)> fault{};
@@ -60,7 +47,7 @@ class DetectionInput {
   void look(const wire::Participant& wire);
 
   /// Objects and messages that were refused, over all topics.
-  std::uint64_t refused() const;
+  std::uint64_t refused() const { return refusals_.count(); }
   const DetectionReporter& reporter() const { return reporter_; }
 
  private:
@@ -70,26 +57,15 @@ class DetectionInput {
     std::uint64_t message{};
     Time received{};
   };
-  void refuse(const std::string& topic, const Error& why);
-  bool must_wait(const Waiting& waiting, const Frames& frames, Time now) const;
-  /// The place in the map, m.
-  Result<Eigen::Vector3d> placed(const Detection& detection, const RobotPlace& place) const;
-  /// T_odom_base at the stamp of a detection.
-  Result<Pose3> pose_at(const Detection& detection, const Frames& frames) const;
-  /// T_base_frame. Errors: frame_unknown.
-  Result<Pose3> mounting(const std::string& frame) const;
 
   DetectionParams params_;
-  Platform platform_;
-  std::shared_ptr<StaticFrames> static_frames_;
+  ObjectPlacer placer_;
   DetectionReporter reporter_;
-  Outputs outputs_;
+  TopicRefusals refusals_;
   std::vector<std::string> names_{};  ///< DDS names of the topics.
   std::vector<std::unique_ptr<wire::RawReader>> readers_{};
   std::deque<Waiting> waiting_{};
-  std::map<std::string, std::uint64_t> refused_{};    ///< By topic.
-  std::map<std::string, std::uint64_t> malformed_{};  ///< By topic, as the wire counted at the last look.
-  std::optional<Time> first_{};                       ///< When the first message came.
+  std::optional<Time> first_{};  ///< When the first message came.
   std::uint64_t messages_{};
 };
 

@@ -98,6 +98,12 @@ Result<void> FindingSource::withdraw(std::uint64_t id) {
   return update(std::move(finding));
 }
 
+const Finding* FindingSource::newest(std::uint64_t id) const {
+  if (const auto changed = changed_.find(id); changed != changed_.end()) return &changed->second;
+  const auto stored = finding_store_.all().find(key(id));
+  return stored != finding_store_.all().end() ? &stored->second : nullptr;
+}
+
 void FindingSource::revise(Time now) {
   std::erase_if(revised_, [now](const auto& entry) { return now - entry.second >= kRefinement; });
   if (changed_.empty() || (round_ && now - *round_ < kRound)) return;

@@ -86,6 +86,8 @@ class FindingSource final : public transfer::Source {
   /// The key of a stored finding, which may be of another owner: the disk is from an older version of this
   /// program, or the file with the robot's identity was lost. Else the key of a new one.
   findings::Key key(std::uint64_t id) const;
+  /// The newest content of a finding, which may still wait for its revision; null: there is none of that id.
+  const findings::Finding* newest(std::uint64_t id) const;
   bool has(std::uint64_t id) const { return finding_store_.all().contains(key(id)); }
   std::size_t size() const { return finding_store_.all().size(); }
   /// Number of findings discarded or not accepted since the start.

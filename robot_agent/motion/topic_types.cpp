@@ -36,7 +36,8 @@ std::string ros_type(const std::string& dds_type) {
 }
 
 std::vector<TopicUse> used_topics(const Platform& platform, VelocityType velocity,
-                                  const std::vector<std::string>& detections) {
+                                  const std::vector<std::string>& detections,
+                                  const std::vector<std::string>& reports) {
   std::vector<TopicUse> all{use(topics::kOdom, false), use(topics::kScan, false),
                             use(topics::kTfStatic, false), use(topics::kBattery, false),
                             use(topics::kExternalCmdVel, false)};
@@ -49,6 +50,7 @@ std::vector<TopicUse> used_topics(const Platform& platform, VelocityType velocit
     all.push_back(use(topics::kPoints, false, lidar.topic));
   if (platform.imu) all.push_back(use(topics::kImu, false, platform.imu->topic));
   for (const std::string& topic : detections) all.push_back(use(topics::kDetections, false, topic));
+  for (const std::string& topic : reports) all.push_back(use(topics::kReports, false, topic));
   return all;
 }
 

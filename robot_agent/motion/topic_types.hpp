@@ -17,9 +17,10 @@ struct TopicUse {
   bool writes{};                     ///< The agent writes it; otherwise it reads it.
 };
 
-/// The topics that an agent with this platform uses. `detections`: names without rt/.
+/// The topics that an agent with this platform uses. `detections`, `reports`: names without rt/.
 std::vector<TopicUse> used_topics(const Platform& platform, VelocityType velocity,
-                                  const std::vector<std::string>& detections = {});
+                                  const std::vector<std::string>& detections = {},
+                                  const std::vector<std::string>& reports = {});
 
 /// The writers and readers of other participants that have one of these topics with another type: DDS
 /// delivers nothing between them and says nothing. One fault for each topic.

@@ -86,27 +86,46 @@ bool is_topic(const std::string& name) {
   return !name.empty() && name.size() <= 128 && name.front() != '/' && std::ranges::all_of(name, plain);
 }
 
-void read_detections(const config::Node& node, DetectionParams& c) {
-  const auto detections = node.child_if("detections");
-  if (!detections.present()) return;
-  c.topics = detections.texts("topics", c.topics);
-  std::vector<std::string> sorted = c.topics;
+/// Up to four different names of topics.
+std::vector<std::string> read_topics(const config::Node& node, const std::vector<std::string>& usual) {
+  constexpr std::size_t kMaxTopics = 4;
+  std::vector<std::string> topics = node.texts("topics", usual), sorted = topics;
   std::ranges::sort(sorted);
-  if (c.topics.size() > DetectionParams::kMaxTopics || !std::ranges::all_of(c.topics, is_topic) ||
+  if (topics.size() > kMaxTopics || !std::ranges::all_of(topics, is_topic) ||
       std::ranges::adjacent_find(sorted) != sorted.end())
-    detections.child("topics").fail(Reason::out_of_range,
-                                    "topics: expected at most 4 different names without a slash in front");
-  c.min_score = detections.number("min_score", config::within(0.0, 1.0), c.min_score);
-  c.sightings = static_cast<int>(detections.integer("sightings", 1, 100, c.sightings));
-  const auto importance = detections.child_if("importance");
+    node.child("topics").fail(Reason::out_of_range,
+                              "topics: expected at most 4 different names without a slash in front");
+  return topics;
+}
+
+/// @param other  The importance of other kinds; null: the key `default` is unknown.
+void read_importance(const config::Node& node, std::map<std::string, std::uint8_t>& of_kinds,
+                     std::uint8_t* other) {
+  const auto importance = node.child_if("importance");
   if (!importance.present()) return;
   for (const auto& [kind, value] : importance.entries()) {
     const auto number = static_cast<std::uint8_t>(value.as_integer(0, 255));
-    if (kind == "default")
-      c.default_importance = number;
+    if (other != nullptr && kind == "default")
+      *other = number;
     else
-      c.importance[kind_of(kind)] = number;
+      of_kinds[kind_of(kind)] = number;
   }
+}
+
+void read_detections(const config::Node& node, DetectionParams& c) {
+  const auto detections = node.child_if("detections");
+  if (!detections.present()) return;
+  c.topics = read_topics(detections, c.topics);
+  c.min_score = detections.number("min_score", config::within(0.0, 1.0), c.min_score);
+  c.sightings = static_cast<int>(detections.integer("sightings", 1, 100, c.sightings));
+  read_importance(detections, c.importance, &c.default_importance);
+}
+
+void read_reports(const config::Node& node, ReportParams& c) {
+  const auto reports = node.child_if("reports");
+  if (!reports.present()) return;
+  c.topics = read_topics(reports, c.topics);
+  read_importance(reports, c.importance, nullptr);
 }
 
 /// The path of a missing tree stays as it was written: the agent starts, holds and reports the error.
@@ -168,6 +187,7 @@ void read_robot_keys(const config::Node& node, const std::string& file, RobotCon
     c.perception = static_cast<PerceptionLevel>(node.choice("perception", kPerceptionWords));
   if (const auto map = node.child_if("map"); map.present()) c.carry_maps = map.flag("carry", false);
   read_detections(node, c.detections);
+  read_reports(node, c.reports);
   if (node.has("start_height")) c.start_height = node.number("start_height", config::within(-1e5, 1e5));
   c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));
   if (node.has("tree")) c.tree = find_tree(node.text("tree"), file);
@@ -194,6 +214,7 @@ AgentParams agent_params(const RobotConfig& config) {
   params.perception = config.perception;
   params.carry_maps = config.carry_maps;
   params.detections = config.detections;
+  params.reports = config.reports;
   params.resume_after_restart = config.resume_after_restart;
   return params;
 }
