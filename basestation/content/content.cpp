@@ -36,21 +36,23 @@ Content::Content(const StationParams& params, Executor& strand, wire::Participan
       book_(params.disk, strand),
       pieces_([&strand] { return strand.now(); },
               [this](const PieceReader::Piece& piece, PieceReader::Stored stored) {
-                const bool has_findings = piece.kind == static_cast<std::uint8_t>(transfer::Kind::findings);
-                if (from_station_ && has_findings)
-                  return desk_.hear_station(piece.robot, *from_station_, piece.data, std::move(stored));
-                if (from_station_) return Result<void>(Reason::malformed, "a station sends marks only");
-                if (has_findings) return desk_.hear(piece.robot, piece.data, std::move(stored));
-                return map_.take(piece.robot, piece.kind, piece.waiting, piece.data, std::move(stored));
+                return take(piece, std::move(stored));
               }),
       desk_({}, params.disk, strand, desk_outputs()),
+      photos_(
+          desk_, params.disk, strand,
+          [this](const std::string& code, const std::string& text) { warn(code, text); },
+          [this] { findings_changed(); }),
       marks_(params.name, params.id, Random(params.seed).fork(kMarkSalt).next(), desk_, strand),
       map_(drawn_start(), params.disk, strand,
            [this](const std::string& text) { warn("map_not_stored", text); }),
       mark_source_(params.name, desk_, marks_),
+      mark_photos_(photos_.photos(), params.disk, strand, nullptr),
       mark_sender_(
           {.session = static_cast<std::uint32_t>(Random(params.seed).fork(kSessionSalt).next()) | 1U}) {
   mark_sender_.add(mark_source_);
+  mark_sender_.add(mark_photos_.thumbnails);
+  mark_sender_.add(mark_photos_.pictures);
   book_.on_change = [this] { findings_changed(); };
 }
 
@@ -60,6 +62,8 @@ void Content::load_findings() {
   if (const std::string lost = desk_.load().text(); !lost.empty()) warn("findings_damaged", lost);
   if (const std::string lost = book_.load(); !lost.empty()) warn("findings_damaged", lost);
   for (const auto& [key, finding] : desk_.all()) book_.add(key);
+  if (const std::string lost = photos_.load(); !lost.empty()) warn("findings_damaged", lost);
+  mark_photos_.ledger.load();
 }
 
 Result<void> Content::open() {
@@ -92,6 +96,17 @@ void Content::take(const radio::BulkPiece& sample, const wire::SampleInfo& info)
   from_station_.reset();
 }
 
+Result<void> Content::take(const PieceReader::Piece& piece, PieceReader::Stored stored) {
+  const bool has_findings = piece.kind == static_cast<std::uint8_t>(transfer::Kind::findings);
+  if (piece.kind == static_cast<std::uint8_t>(transfer::Kind::photos))
+    return photos_.hear(piece.robot, from_station_, piece.data, std::move(stored));
+  if (from_station_ && has_findings)
+    return desk_.hear_station(piece.robot, *from_station_, piece.data, std::move(stored));
+  if (from_station_) return {Reason::malformed, "a station sends marks and their photos only"};
+  if (has_findings) return desk_.hear(piece.robot, piece.data, std::move(stored));
+  return map_.take(piece.robot, piece.kind, piece.waiting, piece.data, std::move(stored));
+}
+
 void Content::take(const radio::BulkAck& sample, const wire::SampleInfo& info) {
   const auto ack = contract::decode(sample);
   if (!ack || ack->carrier || !presence_.up()) return;
@@ -99,7 +114,8 @@ void Content::take(const radio::BulkAck& sample, const wire::SampleInfo& info) {
   if (station == fleet_.stations().end() || station->second.participant != info.sender ||
       station->second.id != ack->station_id)
     return;
-  mark_sender_.acknowledged(ack->to(params_.name), strand_.now());
+  if (mark_sender_.acknowledged(ack->to(params_.name), strand_.now()))
+    mark_photos_.ledger.heard(ack->station_id, strand_.now());
 }
 
 bool Content::open_marks() {
@@ -121,6 +137,10 @@ bool Content::open_marks() {
 void Content::send_marks() {
   if (!presence_.up() || !params_.content || fleet_.stations().empty()) return;
   mark_source_.refresh();
+  mark_photos_.ledger.offer(findings::photos_of(desk_.all(), [this](const findings::Finding& finding) {
+    return marks_.is_own(finding) && desk_.is_stored(finding.key);
+  }));
+  mark_photos_.ledger.tick(strand_.now());
   if (mark_source_.empty() || !open_marks()) return;
   for (transfer::Piece& piece : mark_sender_.due(strand_.now(), radio_.sender())) {
     const contract::BulkPiece out{params_.name,  mark_sender_.session(),
@@ -183,6 +203,13 @@ FindingCounts Content::finding_counts() const {
     if (!finding.withdrawn && (!entry || entry->verdict == Verdict::open)) ++counts_.open;
   }
   return counts_;
+}
+
+std::size_t Content::whole_photos() const {
+  return static_cast<std::size_t>(std::ranges::count_if(desk_.all(), [this](const auto& entry) {
+    const auto& photo = entry.second.photo;
+    return photo && photos().state(photo->content).whole;
+  }));
 }
 
 void Content::findings_changed() {

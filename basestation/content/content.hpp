@@ -11,10 +11,12 @@
 #include "basestation/findings/desk.hpp"
 #include "basestation/findings/mark_source.hpp"
 #include "basestation/findings/marks.hpp"
+#include "basestation/findings/photo_desk.hpp"
 #include "basestation/fleet/presence.hpp"
 #include "basestation/map/map_replica.hpp"
 #include "basestation/model/map_tiles.hpp"
 #include "basestation/model/world.hpp"
+#include "core/findings/photo_source.hpp"
 #include "core/transfer/sender.hpp"
 
 namespace adit::wire {
@@ -41,7 +43,7 @@ class Content {
   Result<void> open();
   /// Sends the receipts that are due.
   void acknowledge();
-  /// Sends other stations the marks that they lack.
+  /// Sends other stations the marks, and their photos, that they lack.
   void send_marks();
   /// Sends receipts soon, as a robot was heard for the first time.
   void greet() { pieces_.greet(); }
@@ -53,6 +55,10 @@ class Content {
   const FindingDesk& desk() const { return desk_; }
   FindingBook& book() { return book_; }
   Marks& marks() { return marks_; }
+  findings::PhotoStore& photos() { return photos_.photos(); }
+  const findings::PhotoStore& photos() const { return photos_.photos(); }
+  /// Findings whose whole photo is here.
+  std::size_t whole_photos() const;
   const FindingBook& book() const { return book_; }
   const PieceReader& pieces() const { return pieces_; }
   FindingCounts finding_counts() const;
@@ -64,6 +70,7 @@ class Content {
 
  private:
   void take(const radio::BulkPiece& sample, const wire::SampleInfo& info);
+  Result<void> take(const PieceReader::Piece& piece, PieceReader::Stored stored);
   /// Takes what another station has of this station's pieces.
   void take(const radio::BulkAck& sample, const wire::SampleInfo& info);
   /// Opens the ends of the topics on which marks go out; false after an error.
@@ -86,6 +93,7 @@ class Content {
   FindingBook book_;
   PieceReader pieces_;  ///< Of all kinds of content.
   FindingDesk desk_;
+  PhotoDesk photos_;
   Marks marks_;
   MapReplica map_;
   DigestList digests_{};
@@ -94,6 +102,7 @@ class Content {
   mutable FindingCounts counts_{.changes = 1};
   mutable std::uint64_t counted_{};  ///< FindingCounts::changes when the others were counted.
   MarkSource mark_source_;
+  findings::PhotoSources mark_photos_;
   transfer::Sender mark_sender_;
   bool marks_failed_{};               ///< The ends for marks could not be opened.
   std::optional<Id> from_station_{};  ///< The station whose piece is being taken; nothing: a robot's.

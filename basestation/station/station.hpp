@@ -71,6 +71,8 @@ class Station {
   void look_at(const LookedAt& place) { content_.look_at(place); }
   /// Number of stored findings of all robots.
   std::size_t findings() const { return content_.desk().all().size(); }
+  /// Findings whose whole photo is here.
+  std::size_t photos() const { return content_.whole_photos(); }
   /// The staircases of the map, computed from all findings.
   StairsReport stairs() const;
   /// True after `down`, until `up`.
