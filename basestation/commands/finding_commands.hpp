@@ -23,6 +23,10 @@ class FindingCommands {
 
  private:
   void add(const command::Request& request, const Done& done);
+  /// Reads and stores the photo of a mark, then adds the mark.
+  void add_with_photo(const command::Request& request, const Mark& mark, const Done& done);
+  void put(const command::Request& request, const Mark& mark, const Done& done);
+  void write_photo(const command::Request& request, const findings::Key& key, const Done& done);
   void remove(const command::Request& request, const findings::Key& key, const Done& done);
   void judge(const command::Request& request, const findings::Key& key, const Done& done);
 

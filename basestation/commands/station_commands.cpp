@@ -55,12 +55,15 @@ Outcome list_findings(const Request& request, const Fleet& fleet, Content& conte
     if (!found && !fleet.robot(robot)) return unknown_robot(request, fleet, robot);
   }
   const FoundReport report = findings_report(content.desk(), content.book(), content.marks(),
-                                             content.chunks(), fleet, request.robots);
+                                             content.photos(), content.chunks(), fleet, request.robots);
   Outcome outcome =
       done_outcome(request, findings_text(report), findings_json(report, content.desk(), content.book()));
   const std::uint64_t refused = content.pieces().refused(transfer::Kind::findings);
   outcome.json["refused_pieces"] = refused;
   if (refused > 0) outcome.text += std::to_string(refused) + " pieces of findings refused\n";
+  const std::uint64_t photos = content.pieces().refused(transfer::Kind::photos);
+  outcome.json["refused_photo_pieces"] = photos;
+  if (photos > 0) outcome.text += std::to_string(photos) + " pieces of photos refused\n";
   return outcome;
 }
 

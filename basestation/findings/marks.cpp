@@ -28,7 +28,8 @@ Result<void> Marks::add(const Mark& mark, Done done) {
                             .position = mark.position,
                             .stamp = static_cast<std::uint64_t>(home_.now().time_since_epoch().count()),
                             .text = mark.text,
-                            .data = findings::encode_mark()};
+                            .data = findings::encode_mark(),
+                            .photo = mark.photo};
   if (mark.text.size() > findings::Finding::kText) return wrong_mark("the text has more than 128 bytes");
   if (mark.kind == findings::kStairs) return wrong_mark("staircases are measured by robots");
   if (desk_.marks_of(station_, id_) >= kMaxMarks)

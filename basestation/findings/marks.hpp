@@ -20,6 +20,7 @@ struct Mark {
   std::string kind{};
   std::array<double, 3> position{};  ///< Map frame, m.
   std::string text{};
+  std::optional<findings::PhotoRef> photo{};
 };
 
 /// The marks of this station's operator: findings of the station itself, on its desk and its disk. They are

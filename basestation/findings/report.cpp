@@ -32,6 +32,12 @@ double age(const Finding& finding, const Fleet& fleet) {
   return static_cast<double>(robot->stamp - finding.stamp) * 1e-9;
 }
 
+FoundPhoto found_photo(const findings::PhotoRef& ref, const findings::PhotoStore& photos) {
+  const findings::PhotoState state = photos.state(ref.content);
+  const PhotoHere part = state.thumbnail ? PhotoHere::thumbnail : PhotoHere::none;
+  return {state.whole ? PhotoHere::whole : part, state.percent, ref.bytes};
+}
+
 std::string verdict_text(const FoundItem& item) {
   if (!item.withdrawn) return to_string(item.verdict);
   return item.verdict == Verdict::open ? "withdrawn" : to_string(item.verdict) + std::string(", withdrawn");
@@ -40,7 +46,7 @@ std::string verdict_text(const FoundItem& item) {
 }  // namespace
 
 FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Marks& marks,
-                            const ChunkStore& chunks, const Fleet& fleet,
+                            const findings::PhotoStore& photos, const ChunkStore& chunks, const Fleet& fleet,
                             const std::vector<std::string>& robots) {
   FoundReport report;
   std::map<std::string, std::uint32_t> here;
@@ -53,6 +59,7 @@ FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, co
                    .text = command::clean(f->text, Finding::kText),
                    .withdrawn = f->withdrawn,
                    .mark = findings::marked_by(*f).has_value()};
+    if (f->photo) item.photo = found_photo(*f->photo, photos);
     if (item.mark)
       item.age = marks.age(*f);
     else if (const double seconds_ago = age(*f, fleet); seconds_ago >= 0)
@@ -76,12 +83,12 @@ std::string findings_text(const FoundReport& report) {
   std::string out = "nothing was found yet\n";
   if (!report.findings.empty()) {
     std::vector<std::vector<std::string>> rows{
-        {"N", "ROBOT", "KIND", "X", "Y", "Z", "AGE S", "VERDICT", "TEXT", "NOTE", "ID"}};
+        {"N", "ROBOT", "KIND", "X", "Y", "Z", "AGE S", "VERDICT", "PHOTO", "TEXT", "NOTE", "ID"}};
     for (const FoundItem& item : report.findings)
       rows.push_back({std::to_string(item.number), item.robot + (item.mark ? " (mark)" : ""), item.kind,
                       fixed(item.position[0], 2), fixed(item.position[1], 2), fixed(item.position[2], 2),
-                      item.age ? fixed(*item.age, 0) : "-", verdict_text(item), item.text, item.note,
-                      item.id});
+                      item.age ? fixed(*item.age, 0) : "-", verdict_text(item), photo_text(item.photo),
+                      item.text, item.note, item.id});
     out = table(rows);
   }
   for (const FoundAtRobot& robot : report.at_robots) {

@@ -10,13 +10,14 @@
 #include "basestation/fleet/fleet.hpp"
 #include "basestation/map/chunk_store.hpp"
 #include "basestation/model/found.hpp"
+#include "core/findings/photo_store.hpp"
 
 namespace adit::station {
 
 /// The findings of the named robots and stations, or of all, where they are in the map now; the most
 /// important first.
 FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Marks& marks,
-                            const ChunkStore& chunks, const Fleet& fleet,
+                            const findings::PhotoStore& photos, const ChunkStore& chunks, const Fleet& fleet,
                             const std::vector<std::string>& robots);
 std::string findings_text(const FoundReport& report);
 /// As json_of(FoundReport), with the data and the owner of each finding.

@@ -49,7 +49,9 @@ Result<command::Request> parsed(const std::string& line, const std::string& fold
   auto request = command::parse(line);
   if (!request || folder.empty()) return request;
   for (command::ArgumentValue& value : request->values) {
-    if ((value.name != "FILE" && value.name != "--export") || value.words.front().empty()) continue;
+    if ((value.name != "FILE" && value.name != "--export" && value.name != "--photo") ||
+        value.words.front().empty())
+      continue;
     std::string& file = value.words.front();
     file = (std::filesystem::path(folder) / file).lexically_normal().string();
     // The same bounds as for a typed word.

@@ -14,6 +14,17 @@ namespace adit::station {
 /// What the operator decided about a finding.
 enum class Verdict : std::uint8_t { open, confirmed, rejected };
 
+/// How much of a finding's photo is at the station.
+enum class PhotoHere : std::uint8_t { none, thumbnail, whole };
+
+/// The photo of a finding as the station lists it.
+struct FoundPhoto {
+  PhotoHere here{PhotoHere::none};
+  std::uint8_t percent{};  ///< Of the whole photo that is here, [0, 100].
+  std::uint32_t bytes{};   ///< Of the whole photo.
+  bool operator==(const FoundPhoto&) const = default;
+};
+
 /// A finding as the station lists it.
 struct FoundItem {
   std::uint32_t number{};  ///< By which commands name it; the station counts findings from 1.
@@ -25,9 +36,10 @@ struct FoundItem {
   std::string text{};
   std::optional<double> age{};  ///< By the robot's clock, s; unset: unknown.
   Verdict verdict{Verdict::open};
-  std::string note{};     ///< The operator's.
-  bool withdrawn{false};  ///< Its robot or operator took it back.
-  bool mark{false};       ///< An operator marked it; `robot` is the name of his station.
+  std::string note{};                 ///< The operator's.
+  bool withdrawn{false};              ///< Its robot or operator took it back.
+  std::optional<FoundPhoto> photo{};  ///< Unset: it has none.
+  bool mark{false};                   ///< An operator marked it; `robot` is the name of his station.
   bool operator==(const FoundItem&) const = default;
 };
 
@@ -49,6 +61,10 @@ struct FoundReport {
 
 /// "open", "confirmed", "rejected".
 const char* to_string(Verdict verdict);
+/// "none", "thumbnail", "whole".
+const char* to_string(PhotoHere here);
+/// "-" without a photo, "none", "thumbnail", "thumbnail, 40 %" or "whole".
+std::string photo_text(const std::optional<FoundPhoto>& photo);
 
 /// Reads the outcome of `findings`. Errors: as of health_of().
 Result<FoundReport> findings_of(const CommandOutcome& outcome);

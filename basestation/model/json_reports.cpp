@@ -23,6 +23,26 @@ const char* word(PartState state) {
   return index < kWords.size() ? kWords[index] : "FAILED";
 }
 
+const char* to_string(PhotoHere here) {
+  switch (here) {
+    case PhotoHere::none:
+      return "none";
+    case PhotoHere::thumbnail:
+      return "thumbnail";
+    case PhotoHere::whole:
+      break;
+  }
+  return "whole";
+}
+
+std::string photo_text(const std::optional<FoundPhoto>& photo) {
+  if (!photo) return "-";
+  const std::string here = to_string(photo->here);
+  return photo->percent == 0 || photo->here == PhotoHere::whole
+             ? here
+             : here + ", " + std::to_string(photo->percent) + " %";
+}
+
 const char* to_string(Verdict verdict) {
   constexpr std::array kWords{"open", "confirmed", "rejected"};
   return kWords[std::min(static_cast<std::size_t>(verdict), kWords.size() - 1)];
@@ -106,6 +126,13 @@ void fields(Io& io, Of<Io, NetworkReport>& report) {
 }
 
 template <class Io>
+void fields(Io& io, Of<Io, FoundPhoto>& photo) {
+  io.word("here", photo.here, PhotoHere::whole, [](PhotoHere here) { return to_string(here); });
+  io.field("percent", photo.percent);
+  io.field("bytes", photo.bytes);
+}
+
+template <class Io>
 void fields(Io& io, Of<Io, FoundItem>& item) {
   io.field("number", item.number);
   io.field("robot", item.robot);
@@ -119,6 +146,7 @@ void fields(Io& io, Of<Io, FoundItem>& item) {
   io.field("note", item.note);
   if (Io::kReads || item.withdrawn) io.field("withdrawn", item.withdrawn);
   if (Io::kReads || item.mark) io.field("mark", item.mark);
+  if (Io::kReads || item.photo) io.field("photo", item.photo);
 }
 
 template <class Io>

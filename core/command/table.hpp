@@ -124,6 +124,8 @@ inline constexpr std::array kTable{
                                        .what = "a kind of finding",
                                        .choices = "person|fire|gas|hazard|blocked|artifact|exit"},
                               coordinate("X"), coordinate("Y"), coordinate("Z", 0), kText},
+                .options = {Option{
+                    .name = "--photo", .summary = "a JPEG that shows it, up to 8 MB", .values = {kFile}}},
                 .runs = Runs::station,
                 .summary = "mark something that you know of on the map",
                 .details = "without Z on the floor that robots saw there, else at 0; a first word of TEXT "
@@ -137,6 +139,12 @@ inline constexpr std::array kTable{
                 .summary = "withdraw a mark of your own",
                 .details = "it stays in the list as withdrawn",
                 .example = "finding remove 4"},
+    CommandInfo{.name = "finding photo",
+                .arguments = {Argument{.name = "photo", .type = Type::keyword}, kFinding, kFile},
+                .runs = Runs::station,
+                .summary = "write the photo of a finding to a file",
+                .details = "a .jpg; the thumbnail while the whole photo is not here",
+                .example = "finding photo 4 place.jpg"},
     CommandInfo{.name = "finding note",
                 .arguments = {kFinding, Argument{.name = "note", .type = Type::keyword}, kText},
                 .runs = Runs::station,

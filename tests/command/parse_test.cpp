@@ -69,12 +69,18 @@ TEST(Parse, AMarkWithAndWithoutHeightAndText) {
   const auto quoted = parse("finding add person 12 4.5 '3 of them'");
   EXPECT_FALSE(quoted->has("Z"));
   EXPECT_THAT(words(quoted), ElementsAre("3 of them"));
+  const auto photo = parse("finding add person 12 4.5 calls --photo x.jpg for help");
+  EXPECT_EQ(photo->word("--photo"), "x.jpg");
+  EXPECT_THAT(words(photo), ElementsAre("calls", "for", "help"));
+  EXPECT_EQ(parse("finding photo 3 x.jpg")->word("FILE"), "x.jpg");
+  EXPECT_EQ(parse("finding add person 12 4.5 a photo 3 x")->verb, verb("finding add"));
   const auto number = parse("finding 3 note add 1 2");
   EXPECT_EQ(number->verb, verb("finding note"));
   for (const char* line :
        {"finding add", "finding add person", "finding add person 1", "finding add person x 2",
         "finding add 'two words' 1 2", "finding add person nan 2", "finding add person 1 1e9",
-        "finding add person 1 2 --photo x.jpg", "finding remove", "finding remove x"})
+        "finding add person 1 2 --picture x.jpg", "finding add person 1 2 --photo", "finding photo 3",
+        "finding photo x.jpg", "finding remove", "finding remove x"})
     EXPECT_FALSE(parse(line).ok()) << line;
 }
 

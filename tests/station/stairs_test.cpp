@@ -59,6 +59,7 @@ class StairsTest : public StationTest {
   FindingBook book_;
   FindingDesk desk_;
   Marks marks_{"op1", {1}, 1, desk_, *strand_};
+  findings::PhotoStore photos_{{}, nullptr, *strand_, nullptr, {}};
   ChunkStore chunks_;
   Fleet fleet_{"op1", {1}};
 };
@@ -87,7 +88,7 @@ TEST_F(StairsTest, MoveWithTheSubmapInWhichTheyWereSeen) {
   const Eigen::Vector3d moved = after * (before.inverse() * stairs.foot);
   EXPECT_NEAR((report().stairs[0].stairs.foot - moved).norm(), 0.0, 0.001);
   EXPECT_NEAR(report().stairs[0].stairs.heading, stairs.heading + 0.25, 0.01);
-  const FoundReport found = findings_report(desk_, book_, marks_, chunks_, fleet_, {});
+  const FoundReport found = findings_report(desk_, book_, marks_, photos_, chunks_, fleet_, {});
   EXPECT_NEAR(found.findings.at(0).position[1], moved.y(), 0.001);
 }
 
