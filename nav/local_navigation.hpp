@@ -30,6 +30,8 @@ class LocalNavigation {
 
   /// See TerrainMap::add_scan.
   void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
+  /// See TerrainMap::set_stairs.
+  void set_stairs(std::span<const Staircase> stairs) { terrain_.set_stairs(stairs); }
   /// Plans over the terrain seen so far; see Planner::plan, and WayBack and Escape for the targets `back_up`
   /// and `leave`. A blocked plan has a cause. A plan to leave names the side of what nearly touches the body,
   /// and is blocked when no motion leads away from it. Before the first scan no space is known to be free,

@@ -7,35 +7,13 @@
 #include <vector>
 
 #include "core/geometry/staircase.hpp"
+#include "nav/geometry/stairs_geometry.hpp"
 #include "nav/routing/tile.hpp"
 
 namespace adit::nav {
 
-/// Before and behind a staircase a route keeps to its axis for so long, m.
-inline constexpr double kStairsApproach = 0.8;
-
 /// Whether two estimates of a staircase lead a route the same way: refinements below a cell are ignored.
 bool leads_the_same(const Staircase& a, const Staircase& b);
-
-/// A place relative to a staircase, m.
-struct OnStairs {
-  double along{};   ///< Distance behind the lowest riser, in the direction of climbing.
-  double across{};  ///< To the left of the axis.
-};
-inline OnStairs on_stairs(const Staircase& stairs, double x, double y) {
-  const Eigen::Vector2d d = stairs.direction();
-  const double dx = x - stairs.foot.x(), dy = y - stairs.foot.y();
-  return {dx * d.x() + dy * d.y(), dy * d.x() - dx * d.y()};
-}
-
-/// Horizontal distance from the lowest to the highest riser, m.
-inline double length_of(const Staircase& stairs) { return (stairs.steps - 1) * stairs.run; }
-
-/// Height of the tread at a distance behind the lowest riser; that of a floor before and behind, m.
-inline double tread_height(const Staircase& stairs, double along) {
-  const double treads = std::floor(along / stairs.run) + 1.0;
-  return stairs.floor_below() + std::clamp(treads, 0.0, static_cast<double>(stairs.steps)) * stairs.rise;
-}
 
 /// Calls `visit(ix, iy, place)` for each cell whose centre is up to `margin` (m) before or behind a
 /// staircase, and between its sides.

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
+
+#include "nav/geometry/stairs_geometry.hpp"
 
 namespace adit::nav {
 namespace {
@@ -86,6 +89,7 @@ void TerrainMap::clear() {
   ground_.clear();
   obstacles_.clear();
   drops_.clear();
+  stairs_.clear();
   cells_.clear();
   height_correction_ = 0;
   tilt_error_.setZero();
@@ -243,22 +247,42 @@ void TerrainMap::find_drops(const View& view, float farthest) {
   drops_.finish(view, rays_, ground_);
 }
 
+void TerrainMap::set_stairs(std::span<const Staircase> stairs) {
+  stairs_.clear();
+  std::ranges::copy_if(stairs, std::back_inserter(stairs_),
+                       [this](const Staircase& each) { return climbs(platform_, each); });
+}
+
+bool TerrainMap::is_on_stairs(const Eigen::Vector2f& at) const {
+  constexpr double kSameFloor = 0.7;  // m: less than half a storey.
+  // The cell of the edge and the one before it, which is written with a drop.
+  constexpr double kEdge = 2 * double{GroundGrid::kCell};
+  const double z = last_body_.position.z();
+  return std::ranges::any_of(stairs_, [&](const Staircase& stairs) {
+    if (z < stairs.floor_below() - kSameFloor || z > stairs.floor_above() + kSameFloor) return false;
+    const OnStairs place = on_stairs(stairs, double{at.x()}, double{at.y()});
+    return place.along >= -kStairsApproach && place.along <= length_of(stairs) + kEdge &&
+           std::abs(place.across) <= stairs.width / 2;
+  });
+}
+
 // Includes the last cell of the ground before each drop, because a drop may begin anywhere in it.
 void TerrainMap::write_drops() {
   const int side = ground_.side();
   std::fill(drop_.begin(), drop_.end(), std::uint8_t{0});
   const auto write = [this](int index) {
-    if (std::exchange(drop_[index], std::uint8_t{1})) return;
     const Eigen::Vector2f at = ground_.middle(index);
+    if (is_on_stairs(at) || std::exchange(drop_[index], std::uint8_t{1})) return;
     cells_.push_back({at.x(), at.y(), 1.0f, 0.0f, Layer::drop});
   };
   for (const Drops::Cell& cell : drops_.cells()) {
     const int index = static_cast<int>(cell.index);
     if (cell.probability < Drops::kBlocks) {
       const Eigen::Vector2f at = ground_.middle(index);
-      cells_.push_back({at.x(), at.y(), cell.probability, 0.0f, Layer::drop});
+      if (!is_on_stairs(at)) cells_.push_back({at.x(), at.y(), cell.probability, 0.0f, Layer::drop});
       continue;
     }
+    if (is_on_stairs(ground_.middle(index))) continue;
     write(index);
     const int i = index / side, j = index % side;
     if (i == 0 || j == 0 || i == side - 1 || j == side - 1) continue;

@@ -6,6 +6,7 @@
 #include "core/config/platform.hpp"
 #include "core/config/traversability.hpp"
 #include "core/geometry/scan_points.hpp"
+#include "core/geometry/staircase.hpp"
 #include "nav/terrain/drops.hpp"
 #include "nav/terrain/obstacle_cells.hpp"
 #include "nav/terrain/surface.hpp"
@@ -33,6 +34,10 @@ class TerrainMap {
   /// time, s, not decreasing.
   void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
 
+  /// Sets the known staircases, frame of the poses. On one that the platform climbs no ground is missing:
+  /// from a floor above, its own edge hides steps that are steeper than the ray over it.
+  void set_stairs(std::span<const Staircase> stairs);
+
   /// All places with a cost; valid until the next scan. Layers that share a place have one cell each.
   std::span<const TerrainCell> cells() const { return cells_; }
   /// Maximum number of cells().
@@ -58,6 +63,8 @@ class TerrainMap {
   /// Whether a return is so far below the ground that the ground is missing there.
   bool is_below(const Eigen::Vector3f& p) const;
   void find_drops(const View& view, float farthest);
+  /// Whether a place belongs to a staircase that leads from the robot's height, or to the floor at its ends.
+  bool is_on_stairs(const Eigen::Vector2f& at) const;
   void write_drops();
   void write_cells();
 
@@ -78,6 +85,7 @@ class TerrainMap {
   std::vector<Eigen::Vector3f> deep_{};   ///< Returns whose ray went below the ground within range.
   std::vector<std::uint8_t> solid_;       ///< Marks the cells of the ground's window with an obstacle.
   std::vector<std::uint8_t> drop_;        ///< Marks those that are written as a blocking drop.
+  std::vector<Staircase> stairs_{};       ///< Those that the platform climbs.
   std::vector<TerrainCell> cells_{};
   Pose3 last_body_{};
   double epoch_{0};

@@ -347,6 +347,7 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   job->state = recovery_.state();
   if (std::holds_alternative<GoTo>(motion_)) job->target = recovery_.target(job->target);
   job->peers = peers_;
+  job->stairs = stairs_;
   job->pose = frames_.T_odom_base().planar();
   if (is_bound() && !fence_.empty()) job->border = fence_.border(frames_, kBorderRange);
   job->odom_epoch = frames_.odom_epoch();

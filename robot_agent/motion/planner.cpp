@@ -63,6 +63,7 @@ void Planner::plan(const std::shared_ptr<const PlanJob>& job,
         nav::LocalNavigation& local_navigation = maps->local_navigation;
         if (std::exchange(maps->odom_epoch, job->odom_epoch) != job->odom_epoch) local_navigation.clear();
         const double stamp = seconds(job->made.time_since_epoch());
+        local_navigation.set_stairs(job->stairs);
         local_navigation.add_scan(job->scan->measured(), job->scan->body, stamp);
         auto answer = std::make_shared<PlanAnswer>();
         if (job->target.kind != nav::Target::Kind::none)

@@ -6,6 +6,7 @@
 #include "core/component/call.hpp"
 #include "core/component/component.hpp"
 #include "core/geometry/scan_points.hpp"
+#include "core/geometry/staircase.hpp"
 #include "nav/local_navigation.hpp"
 #include "nav/recovery/recovery.hpp"
 
@@ -43,6 +44,7 @@ struct PlanJob {
   /// Points along the border of forbidden ground, odometry frame, m.
   std::vector<Eigen::Vector2f> border{};
   std::vector<Eigen::Vector3f> peers{};  ///< Centres and radii of the other robots, odometry frame, m.
+  std::vector<Staircase> stairs{};       ///< Those that the robot knows, odometry frame.
   std::uint32_t odom_epoch{};            ///< Epoch of that frame; maps of another epoch are discarded.
   std::uint64_t generation{};            ///< Generation of the goal to which `target` leads, for the caller.
   Time made{};

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "nav/routing/route_follower.hpp"
 #include "nav/routing/route_planner.hpp"
+#include "nav/terrain/terrain_map.hpp"
 #include "tests/nav/box_world.hpp"
 #include "tests/nav/route_world.hpp"
 
@@ -139,6 +141,56 @@ TEST(KnownStairs, TheReasonNamesOnlyWhatLeadsTowardsTheGoal) {
   EXPECT_FALSE(between(stairs, 0.0, 0.0));
   EXPECT_FALSE(between(stairs, 0.0, -3.0));
   EXPECT_FALSE(between(stairs, 4.0, 8.0));
+}
+
+/// Nine steps of 0.16 m down along x from the edge of a landing at x = 0, between walls.
+struct FlightDown {
+  static constexpr double kRise = 0.16, kRun = 0.25, kLanding = 9 * kRise;
+  BoxWorld world{};
+  FlightDown() {
+    world.ceiling = 6.0;
+    world.lowest = -45;
+    world.boxes = {{-3, 0, -1.5, 1.5, 0, kLanding}, {-3, 0, 1.5, 1.7, 0, 5},  {-3, 0, -1.7, -1.5, 0, 5},
+                   {-3.2, -3, -2, 2, 0, 5},         {0, 2.5, 0.7, 1.7, 0, 5}, {0, 2.5, -1.7, -0.7, 0, 5}};
+    for (int n = 0; n < 8; ++n)
+      world.boxes.push_back({n * kRun, (n + 1) * kRun, -0.7, 0.7, 0, kLanding - (n + 1) * kRise});
+  }
+  static Staircase stairs() {
+    Staircase steps;
+    steps.foot = {8 * kRun, 0, kRise / 2};
+    steps.heading = M_PI;
+    steps.rise = kRise;
+    steps.run = kRun;
+    steps.width = 1.4;
+    steps.steps = 9;
+    return steps;
+  }
+  /// Impassable cells on the upper steps, after a look from the landing, 1.2 m before the edge.
+  int blocked(const Platform& platform, const std::vector<Staircase>& known) const {
+    TerrainMap map(platform);
+    map.set_stairs(known);
+    std::mt19937 random(1);
+    for (int i = 0; i < 5; ++i) {
+      auto points = world.scan({-1.2, 0, 0}, kLanding + platform.lidar_height, 32, 720, 0.0, random);
+      for (Eigen::Vector3f& point : points) point.z() -= static_cast<float>(kLanding);
+      Pose3 body;
+      body.position = {-1.2, 0, kLanding};
+      map.add_scan(points, body, 0.1 * i);
+    }
+    return static_cast<int>(std::ranges::count_if(map.cells(), [](const TerrainCell& cell) {
+      return cell.cost >= 1.0f && cell.x > -0.15f && cell.x < 1.0f && std::abs(cell.y) < 0.4f;
+    }));
+  }
+};
+
+TEST(KnownStairs, TheEdgeOfALandingHidesStepsThatAreKnown) {
+  const FlightDown flight;
+  EXPECT_GT(flight.blocked(legged(), {}), 5) << "they cannot be seen from there";
+  EXPECT_EQ(flight.blocked(legged(), {FlightDown::stairs()}), 0);
+  EXPECT_GT(flight.blocked(wheeled(), {FlightDown::stairs()}), 5) << "which wheels do not descend";
+  Staircase elsewhere = FlightDown::stairs();
+  elsewhere.foot.z() -= 3.0;
+  EXPECT_GT(flight.blocked(legged(), {elsewhere}), 5) << "those of another floor";
 }
 
 }  // namespace
