@@ -57,6 +57,17 @@ Eigen::Vector3d on_axis(const NarrowPassage& passage, double behind) {
           passage.middle.z()};
 }
 
+// Whether the route changes the floor in unseen space, also straight up in one place.
+bool changes_floor_unseen(const Route& route) {
+  double rise = 0.0;
+  for (std::size_t i = 0; i + 1 < route.points.size(); ++i) {
+    const Eigen::Vector3d way = route.points[i + 1] - route.points[i];
+    const bool unseen = (i < route.unknown.size() && route.unknown[i]) || way.head<2>().norm() < kRouteCell;
+    if (unseen) rise += std::abs(way.z());
+  }
+  return rise > 1.0;
+}
+
 }  // namespace
 
 Target target_of(const RouteStep& step) {
@@ -136,8 +147,34 @@ void RouteFollower::take(Route route, bool same) {
   if (route_.found() && !same) ++number_;
 }
 
+// A way up that was not seen is a guess. While the route consists of that guess, and stairs lead there that
+// are closed to the body, it is worth as many metres as a goal that was not seen (`--budget` of goto). Height
+// that was gained proves a ramp.
+std::optional<Staircase> RouteFollower::give_up_search(const RoutePlanner& planner,
+                                                       const RouteRequest& request) {
+  constexpr double kMinSearch = 20.0, kDetour = 1.5;  // m, times the straight line.
+  constexpr double kGained = 0.5;  // m: more than the error of heights, less than half a storey.
+  const double height = std::abs(request.goal.z() - request.place.z());
+  const auto stairs =
+      std::isfinite(height) ? planner.closed_stairs(request.place.z(), request.goal.z()) : std::nullopt;
+  if (!stairs || !changes_floor_unseen(route_)) {
+    search_.reset();
+    return std::nullopt;
+  }
+  const Eigen::Vector2d at = request.place.head<2>();
+  if (!search_ || height < search_->height - kGained)
+    search_ = Search{at, std::max(kMinSearch, kDetour * (request.goal.head<2>() - at).norm()), height};
+  // Noise of a stationary robot's odometry counts no metres.
+  if (const double step = (at - search_->at).norm(); step >= kRouteCell) {
+    search_->left -= step;
+    search_->at = at;
+  }
+  return search_->left > 0.0 ? std::nullopt : stairs;
+}
+
 void RouteFollower::clear() {
   route_ = {};
+  search_.reset();
   goal_id_.reset();
   unreachable_since_.reset();
   looked_.reset();
@@ -304,7 +341,10 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
     advance(planner, place);
     if (asked) look_around(planner, request);
   }
-  const bool lost = route_.found() && !planner.measure(route_);
+  // A route through unseen space may climb where the ground does not: the robot is below or above it then.
+  const bool off =
+      route_.found() && std::abs(route_.points.front().z() - place.z()) > double{kFloorSeparation};
+  const bool lost = route_.found() && (!planner.measure(route_) || off);
   const bool usable = route_.found() && !lost;
   if (lost || moved || !looked_ || request.stamp_s - *looked_ >= kLookPeriod) {
     looked_ = request.stamp_s;
@@ -317,9 +357,13 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
   RouteStep step{};
   if (route_.found()) {
     unreachable_since_.reset();
-    step = along(planner, place);
-    step.end_speed = end_speed(step, place, request.pass);
-    add_ahead(step);
+    if (const auto stairs = give_up_search(planner, request)) {
+      step = {.state = RouteStep::State::unreachable, .goal = Standing::over_stairs, .stairs = stairs};
+    } else {
+      step = along(planner, place);
+      step.end_speed = end_speed(step, place, request.pass);
+      add_ahead(step);
+    }
   } else if (route_.status == RouteStatus::start_blocked) {
     step.state = RouteStep::State::start_blocked;
   } else if (planner.map().has_blocked_places()) {
@@ -328,6 +372,7 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const RouteRequest& request
     if (!unreachable_since_) unreachable_since_ = request.stamp_s;
     if (request.stamp_s - *unreachable_since_ >= kProof) step.state = RouteStep::State::unreachable;
     if (route_.stairs) step.goal = Standing::over_stairs;
+    step.stairs = route_.stairs;
   }
   step.replanned = asked;
   return step;

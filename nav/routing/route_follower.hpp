@@ -41,6 +41,7 @@ struct RouteStep {
   bool last{true};                         ///< `target` is the goal.
   double end_speed{0};                     ///< Speed at `target` that the rest of the route permits, m/s.
   Standing goal{Standing::standable};      ///< Of the goal itself: `unseen` while its ground is unknown.
+  std::optional<Staircase> stairs{};       ///< Of a goal that is `over_stairs`.
   std::optional<NarrowPassage> passage{};  ///< The next passage on the route to `target`.
   /// The first corners of the rest of the route, from the robot on, at most kMaxAhead; empty without a route.
   std::vector<Eigen::Vector3d> ahead{};
@@ -87,6 +88,8 @@ class RouteFollower {
   bool leads_through(const NarrowPassage& passage, const Eigen::Vector3d& place) const;
   void watch_passage(RoutePlanner& planner, const Eigen::Vector3d& place);
   void take(Route route, bool same);
+  /// Counts the metres of the search for a way round closed stairs. Returns the stairs once they are used up.
+  std::optional<Staircase> give_up_search(const RoutePlanner& planner, const RouteRequest& request);
 
   // Minimum of RouteStep::target's distance, except at the goal, m.
   static constexpr double kLeastAhead = 1.2;
@@ -100,6 +103,13 @@ class RouteFollower {
   Eigen::Vector3d goal_{0, 0, 0};
   std::optional<double> unreachable_since_{};
   std::optional<double> looked_{};
+  /// Search for another way to a floor to which known stairs lead that the body does not climb.
+  struct Search {
+    Eigen::Vector2d at{0, 0};  ///< Where metres were counted last.
+    double left{};             ///< Metres that are left.
+    double height{};           ///< Least height difference to the goal so far, m.
+  };
+  std::optional<Search> search_{};
   std::optional<NarrowPassage> passage_{};  // The passage that the robot approaches or crosses.
   bool frozen_{false};                      // passage_ was seen from near and is fixed.
 };

@@ -20,6 +20,8 @@ RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
     : platform_(platform),
       params_(params),
       passage_width_(narrow_width(platform, kApproach)),
+      limits_(Traversability::of(platform)),
+      level_(ScanProfile::most_wrong(platform)),
       map_(params, ScanProfile::most_wrong(platform)),
       profile_(platform, params),
       builder_(platform, params),
@@ -98,15 +100,19 @@ std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, dou
   const int cells = static_cast<int>(reach / kRouteCell);
   std::optional<RouteEnd> best;
   double least = reach + kRouteCell;
+  bool best_level = false;  // Of the ground of `place`; other ground is taken only where there is none.
   for (int iy = cy - cells; iy <= cy + cells; ++iy)
     for (int ix = cx - cells; ix <= cx + cells; ++ix) {
       const double d = std::hypot((ix + 0.5) * kRouteCell - place.x(), (iy + 0.5) * kRouteCell - place.y());
-      if (d >= least) continue;
+      if (d >= reach + kRouteCell || (d >= least && best_level)) continue;
       const int index = map_.at_cell(ix, iy, place.z());
       if (index < 0) continue;
       const Tile& tile = builder_.current(map_, index);
       const int c = cell_in_tile(ix, iy);
+      const bool level = std::abs(double{tile.cell_z(c)} - place.z()) <= level_ + limits_.slope * d;
+      if (level == best_level ? d >= least : best_level) continue;
       if (tile.cost[c] == 0 || is_blocked_between(place, ix, iy)) continue;
+      best_level = level;
       least = d;
       best = RouteEnd{{tile.cell_x(c), tile.cell_y(c), tile.cell_z(c)}, index, c};
     }
@@ -139,7 +145,7 @@ void RoutePlanner::finish_ends(Route& route, const Eigen::Vector3d& from, const 
   }
 }
 
-std::optional<Staircase> RoutePlanner::barred(double from, double to) const {
+std::optional<Staircase> RoutePlanner::closed_stairs(double from, double to) const {
   std::vector<Staircase> closed;
   for (const Staircase& stairs : map_.stairs())
     if (!builder_.climbs(stairs)) closed.push_back(stairs);
@@ -162,7 +168,7 @@ Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
     route.status = RouteStatus::unreachable;
   else
     route.status = search_.search(*start, *goal, route.points);
-  if (route.status == RouteStatus::unreachable) route.stairs = barred(from.z(), goal_place.z());
+  if (route.status == RouteStatus::unreachable) route.stairs = closed_stairs(from.z(), goal_place.z());
   if (!route.found()) return route;
   line_.shorten(route.points);
   line_.measure(route);

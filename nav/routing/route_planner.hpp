@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/config/traversability.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/geometry/scan_points.hpp"
 #include "nav/routing/ground_registration.hpp"
@@ -37,6 +38,8 @@ class RoutePlanner {
 
   /// Sets the known staircases, frame of the poses: see SurfaceMap::set_stairs() and TileBuilder.
   void set_stairs(std::span<const Staircase> stairs) { map_.set_stairs(stairs); }
+  /// A known staircase from one height towards another that the body does not climb.
+  std::optional<Staircase> closed_stairs(double from, double to) const;
   /// Plans a route between two places. z NaN in the goal: the floor nearest to the start's, or any floor if
   /// none is known there. A route never crosses a known obstacle. Steps up to 0.36 m that were only seen from
   /// afar cost RouteParams::doubtful_cost.
@@ -73,14 +76,14 @@ class RoutePlanner {
  private:
   bool is_blocked_between(const Eigen::Vector3d& place, int ix, int iy) const;
   std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach);
-  /// A staircase from one height towards another that the body does not climb.
-  std::optional<Staircase> barred(double from, double to) const;
   double goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
   void finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   Platform platform_;
   RouteParams params_;
   double passage_width_;  // m: the robot must cross narrower passages straight.
+  Traversability limits_;
+  double level_;  // m: heights at one place that differ by at most this belong to one ground.
   SurfaceMap map_;
   ScanProfile profile_;
   GroundRegistration registration_{};

@@ -193,5 +193,71 @@ TEST(KnownStairs, TheEdgeOfALandingHidesStepsThatAreKnown) {
   EXPECT_GT(flight.blocked(legged(), {elsewhere}), 5) << "those of another floor";
 }
 
+TEST(KnownStairs, ARouteThatClimbsWhereTheGroundDoesNotIsReplaced) {
+  RoutePlanner planner(legged());
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 40; ++x) planner.set_ground(middle(x, y));
+  planner.finish();
+  RouteFollower follower(legged());
+  Eigen::Vector3d place(1, 2, 0);
+  for (int i = 0; i < 60; ++i) {
+    const RouteStep step = follower.step(planner, {.place = place, .goal = {9, 2, 4.8}, .stamp_s = 0.2 * i});
+    if (step.state != RouteStep::State::along) continue;
+    ASSERT_LE(std::abs(step.ahead.front().z() - place.z()), kFloorSeparation) << place.transpose();
+    const Eigen::Vector2d way = (step.target - place).head<2>();
+    place.head<2>() += std::min(0.2, way.norm()) * way.normalized();
+    const int cx = route_cell(place.x()), cy = route_cell(place.y());
+    for (int y = cy - 3; y <= cy + 3; ++y)
+      for (int x = cx - 3; x <= cx + 3; ++x) planner.set_ground(middle(x, y));
+  }
+  EXPECT_GT(place.x(), 6.0);
+}
+
+/// Drives along the route on a floor at z = 0 that becomes known only around the robot. Returns the metres.
+double driven_before_giving_up(const std::vector<Staircase>& stairs, RouteStep& last) {
+  RoutePlanner planner(wheeled());
+  RouteFollower follower(wheeled());
+  const Eigen::Vector3d goal{9.5, 2, 4.8};
+  Eigen::Vector3d place(1, 2, 0);
+  double driven = 0.0;
+  for (int i = 0; i < 600 && driven < 60.0; ++i) {
+    const int cx = route_cell(place.x()), cy = route_cell(place.y());
+    for (int y = cy - 12; y <= cy + 12; ++y)
+      for (int x = cx - 12; x <= cx + 12; ++x) planner.set_ground(middle(x, y));
+    planner.set_stairs(stairs);
+    last = follower.step(planner, {.place = place, .goal = goal, .stamp_s = 0.2 * i});
+    if (last.state == RouteStep::State::unreachable) break;
+    if (last.state != RouteStep::State::along) continue;
+    const Eigen::Vector2d way = (last.target - place).head<2>();
+    const double step = std::min(0.2, way.norm());
+    place.head<2>() += step * way.normalized();
+    driven += step;
+  }
+  return driven;
+}
+
+TEST(KnownStairs, WheelsSearchAWayRoundForSoManyMetresAndNameTheStairs) {
+  RouteStep last;
+  const double driven = driven_before_giving_up({nine_steps()}, last);
+  EXPECT_EQ(last.state, RouteStep::State::unreachable) << driven << " m";
+  EXPECT_EQ(last.goal, Standing::over_stairs);
+  ASSERT_TRUE(last.stairs);
+  EXPECT_EQ(*last.stairs, nine_steps());
+  EXPECT_LE(driven, 21.0);
+}
+
+TEST(KnownStairs, ARouteBeginsOnTheGroundThatTheRobotIsOn) {
+  RoutePlanner planner(legged(), seen_only());
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 60; ++x) {
+      if (x < 16) planner.set_ground(middle(x, y));
+      if (x > 20) planner.set_ground(middle(x, y, 1.2));
+    }
+  planner.finish();
+  const Route route = planner.plan({2.0, 2.0, 0.0}, {0.7, 2.0, 0.0});
+  ASSERT_TRUE(route.found());
+  EXPECT_NEAR(route.points.front().z(), 0.0, 0.1);
+}
+
 }  // namespace
 }  // namespace adit::nav::test
