@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "core/geometry/pose.hpp"
@@ -62,6 +63,7 @@ struct Progress {
   bool goal_seen{true};  ///< The ground at the goal is known.
   Reason reason{};   ///< Why it makes no progress: see nav::Recovery. None: nothing is to be reported yet.
   Reason refusal{};  ///< With goal_unreachable: what is wrong with the goal itself, if that is known.
+  std::string refusal_text{};  ///< Names what `refusal` is about; empty: nothing more is known.
   nav::RecoveryState recovery{nav::RecoveryState::drive};
   nav::Cause cause{};        ///< With `blocked`: what is in the way.
   nav::Side in_collision{};  ///< With start_in_collision: on this side something touches it, or nearly.

@@ -437,6 +437,9 @@ void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
                      .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
                      .reason = reason,
                      .refusal = refused ? reason_of(step->goal) : Reason::none,
+                     .refusal_text = refused && step->goal == nav::Standing::over_stairs && step->stairs
+                                         ? stairs_in_the_way(*step->stairs, frames_)
+                                         : "",
                      .recovery = recovery_.state(),
                      .cause = recovery_.cause(),
                      .in_collision = recovery_.side()});

@@ -92,7 +92,8 @@ void WaypointMode::watch(GoalState state) {
   if (unreachable && !unreachable_reported_)
     context_.notify_holder(Severity::warning, "unreachable", unreachable_because(),
                            navigated_.refusal == Reason::none ? "no way leads to the goal"
-                                                              : std::string(describe(navigated_.refusal)));
+                           : navigated_.refusal_text.empty()  ? std::string(describe(navigated_.refusal))
+                                                              : navigated_.refusal_text);
   unreachable_reported_ = unreachable;
   const bool drives = state == GoalState::active || state == GoalState::blocked;
   if (!drives || navigated_.reason == Reason::none || unreachable || used_up_) {
