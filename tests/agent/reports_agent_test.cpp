@@ -37,7 +37,9 @@ class Reports : public testing::Test {
                           [this](const radio::BulkPiece& piece, const wire::SampleInfo&) { hear(piece); })
             .value();
     timer = bench->strand().every(1s, [this] {
-      (void)acks.write(encode(contract::BulkAck{.station = op1->name, .station_id = op1->id, .start = 7}));
+      contract::BulkAck ack{.station = op1->name, .station_id = op1->id, .start = 7};
+      if (receipt.newest > 0) ack.receipts.emplace_back("r1", receipt);
+      (void)acks.write(encode(ack));
     });
     bench->run(4s);
   }
@@ -47,6 +49,8 @@ class Reports : public testing::Test {
     program.reset();
   }
   void hear(const radio::BulkPiece& piece) {
+    if (piece.session() != receipt.session) receipt = {piece.session(), 0, {~0ULL, ~0ULL}};
+    receipt.newest = std::max(receipt.newest, piece.id());
     if (piece.kind() == static_cast<std::uint8_t>(transfer::Kind::photos)) {
       const auto photo = findings::decode_photo_piece(piece.data());
       ASSERT_TRUE(photo.ok());
@@ -88,6 +92,7 @@ class Reports : public testing::Test {
   wire::Writer<radio::BulkAck> acks{};
   std::unique_ptr<wire::RawReader> reader{};
   Timer timer{};
+  transfer::Receipt receipt{};  ///< Of all pieces: nothing is lost here.
   std::map<std::uint64_t, findings::Finding> found{};
   std::set<std::uint64_t> thumbnails{};
 };
@@ -108,6 +113,43 @@ TEST_F(Reports, BecomeAFindingWithItsPhoto) {
   EXPECT_EQ(person.photo->content, findings::photo_hash(findings::draw({})));
   EXPECT_EQ(thumbnails, std::set{person.photo->content});
   EXPECT_EQ(notices(), "");
+}
+
+TEST_F(Reports, ChangeAndWithdrawTheFindingOfTheirNumber) {
+  begin();
+  Marker marker = report("base_link", 3.0);
+  marker.texture().data() = findings::draw({});
+  send(marker);
+  ASSERT_EQ(found.size(), 1U);
+  const auto photo = found.begin()->second.photo;
+  Marker changed = report("base_link", 3.0);
+  changed.text("carried away");
+  send(changed);
+  EXPECT_EQ(found.begin()->second.text, "carried away");
+  EXPECT_EQ(found.begin()->second.photo, photo) << "a report without a photo leaves it";
+  const std::uint32_t revision = found.begin()->second.revision;
+  for (int n = 0; n < 30; ++n) {
+    Marker same = report("base_link", 3.0);
+    same.text("carried away");
+    send(same, 100ms);
+  }
+  bench->run(3s);
+  EXPECT_EQ(found.begin()->second.revision, revision) << "nothing to see";
+  Marker gone = report("base_link", 3.0);
+  gone.action(2);
+  send(gone);
+  EXPECT_TRUE(found.begin()->second.withdrawn);
+  send(report("base_link", 3.0));
+  EXPECT_FALSE(found.begin()->second.withdrawn);
+  EXPECT_EQ(found.size(), 1U);
+  bench->stop_agent();
+  bench->start_agent();
+  bench->run(4s);
+  Marker again = report("base_link", 5.0);
+  send(again, 6s);
+  EXPECT_EQ(found.size(), 1U) << "also after a restart of the agent";
+  EXPECT_NEAR(found.begin()->second.position[1], 5.0, 0.1);
+  EXPECT_EQ(found.begin()->second.photo, photo);
 }
 
 TEST_F(Reports, APhotoThatCannotBeUsedCostsOnlyThePhoto) {
@@ -131,6 +173,21 @@ TEST_F(Reports, APhotoThatCannotBeUsedCostsOnlyThePhoto) {
   EXPECT_THAT(notices(), HasSubstr("is no whole JPEG"));
   EXPECT_THAT(notices(), HasSubstr("more pixels"));
   EXPECT_THAT(notices(), HasSubstr("(3 refused so far)"));
+}
+
+TEST_F(Reports, OfAnUnknownFrameOrClockAreRefused) {
+  begin();
+  send(report("base_link", 1.0, 1), 6s);
+  send(report("attic", 1.0, 2), 12s);
+  Marker old = report("base_link", 1.0, 3);
+  old.header().stamp().sec(old.header().stamp().sec() - 12);
+  send(old, 12s);
+  Marker nan = report("base_link", std::nan(""), 4);
+  send(nan, 12s);
+  EXPECT_EQ(found.size(), 1U);
+  EXPECT_THAT(notices(), HasSubstr("the frame 'attic'"));
+  EXPECT_THAT(notices(), HasSubstr("behind the odometry"));
+  EXPECT_THAT(notices(), HasSubstr("is no number"));
 }
 
 TEST_F(Reports, AFloodOfPhotosIsBounded) {
