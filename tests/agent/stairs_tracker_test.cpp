@@ -109,9 +109,10 @@ TEST(StairsTracker, AnEndThatIsLevelFromTwoPlacesIsNoStep) {
 TEST(StairsTracker, ACheckIsOfTheStepsThatWereKnownBeforeItsCloud) {
   StairsTracker tracker = confirmed_one(5);
   const std::uint64_t id = tracker.confirmed()[0].id;
-  for (const double x : {10.0, 10.5})
-    tracker.take(std::array{flight(8.0, 6)}, {x, 2.5, 0.0},
-                 {{id, {.top = Riser::there, .above = Riser::level}}});
+  tracker.take(std::array{flight(8.0, 6)}, {10.0, 2.5, 0.0},
+               {{id, {.top = Riser::there, .above = Riser::level}}});
+  EXPECT_EQ(tracker.confirmed()[0].stairs.steps, 6);
+  tracker.take(std::array{flight(8.0, 6)}, {10.5, 2.5, 0.0}, {{id, {.top = Riser::level}}});
   EXPECT_EQ(tracker.confirmed()[0].stairs.steps, 5) << "the sixth is level";
 }
 
