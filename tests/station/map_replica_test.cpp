@@ -364,7 +364,7 @@ TEST_F(MapReplicaTest, TheRobotOfANameThatWasHeardLastHasTheNewestMapAfterAResta
                  .bytes)
             .ok());
   EXPECT_EQ(by_age(replica->chunks().robots().at("r1")).back()->start, second);
-  // As after the file was written anew, and read by the next start.
+  // As after the file was written again, and read by the next start.
   ChunkStore again;
   for (const JournalPiece& piece : pieces_of(replica->chunks())) {
     const auto content = perception::decode(piece.data);
