@@ -39,6 +39,13 @@ constexpr Duration kLookAhead = 1s;   // Between two updates of what stations sh
 constexpr double kRouteAhead = 20.0;  // m of the route: right of way looks so far ahead.
 constexpr double kBeaconAge = 1.0;    // s: an older beacon of a robot that moves does not say where it is.
 
+/// The staircase in another frame.
+Staircase moved(const Pose3& T, Staircase stairs) {
+  stairs.foot = T * stairs.foot;
+  stairs.heading = wrap_angle(stairs.heading + T.yaw());
+  return stairs;
+}
+
 }  // namespace
 
 Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& command,
@@ -493,8 +500,7 @@ void Agent::CommandComponent::seek_stairs(const std::shared_ptr<const Scan>& sca
          const Pose3 T_map_odom = frames_.map_frame().T_map_odom;
          for (const std::uint64_t id : step->withdrawn) context_.stairs->withdraw(id);
          for (StairsTracker::Tracked tracked : step->stairs) {
-           tracked.stairs.foot = T_map_odom * tracked.stairs.foot;
-           tracked.stairs.heading = wrap_angle(tracked.stairs.heading + T_map_odom.yaw());
+           tracked.stairs = moved(T_map_odom, tracked.stairs);
            if (const auto taken = context_.stairs->take(tracked, to_stamp(now())); !taken)
              context_.notifier->to_all(Severity::warning, "finding_refused", taken.reason(),
                                        "a staircase: " + taken.error().text);
@@ -507,10 +513,7 @@ std::vector<Staircase> Agent::CommandComponent::known_stairs() const {
   if (!context_.stairs || !frames_.initialised() || !localiser_.recognised()) return {};
   const Pose3 T_odom_map = frames_.map_frame().T_map_odom.inverse();
   std::vector<Staircase> out = context_.stairs->all();
-  for (Staircase& stairs : out) {
-    stairs.foot = T_odom_map * stairs.foot;
-    stairs.heading = wrap_angle(stairs.heading + T_odom_map.yaw());
-  }
+  for (Staircase& stairs : out) stairs = moved(T_odom_map, stairs);
   return out;
 }
 

@@ -135,8 +135,7 @@ void FindingCommands::add_with_photo(const Request& request, const Mark& mark, c
         if (!content_.photos().put(*made, findings::usual_importance(mark.kind)))
           return done(finding_refused(request, {Reason::queue_full, "no room for one more photo"}));
         Mark with = mark;
-        with.photo = findings::PhotoRef{made->hash, static_cast<std::uint32_t>(made->picture.size()),
-                                        static_cast<std::uint16_t>(made->thumbnail.size())};
+        with.photo = findings::ref_of(*made);
         put(request, with, done);
       });
 }

@@ -87,8 +87,10 @@ void Content::take(const radio::BulkPiece& sample, const wire::SampleInfo& info)
   const auto piece = contract::decode(sample);
   if (!piece) return;
   const RobotView* robot = fleet_.robot(piece->robot);
-  // A station of a robot's name would end the robot's session.
-  if (robot) return robot->participant == info.sender ? pieces_.take(*piece) : void();
+  if (robot) {  // A station of its name would end its session.
+    if (robot->participant == info.sender) pieces_.take(*piece);
+    return;
+  }
   const auto station = fleet_.stations().find(piece->robot);
   if (station == fleet_.stations().end() || station->second.participant != info.sender) return;
   from_station_ = station->second.id;

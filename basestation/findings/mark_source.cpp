@@ -50,9 +50,8 @@ std::optional<transfer::Source::Content> MarkSource::next(std::span<const PeerId
   }
   if (due.empty()) return std::nullopt;
   std::ranges::stable_sort(due, std::ranges::greater{}, &findings::Finding::importance);
-  findings::FindingPiece piece{.robot = station_,
-                               .stored = static_cast<std::uint32_t>(revisions_.size()),
-                               .owner = marks_.key_of(0).owner};
+  findings::FindingPiece piece{
+      .robot = station_, .stored = static_cast<std::uint32_t>(revisions_.size()), .owner = marks_.owner()};
   std::size_t bytes = findings::encoded_head(station_);
   // One that was lost twice goes alone, so that one that a station cannot store holds up no other.
   const auto goes_alone = [&](const findings::Finding& finding) {

@@ -45,6 +45,8 @@ class Marks {
   Result<void> remove(const findings::Key& key, Done done);
   /// Whether a finding is a mark of this station.
   bool is_own(const findings::Finding& finding) const;
+  /// The owner of this station's marks.
+  const findings::Owner& owner() const { return id_; }
   /// The key of this station's mark of that id.
   findings::Key key_of(std::uint64_t id) const { return {station_, id, id_}; }
   /// Time since a mark of this station was added, s; nothing: it was in an earlier run, whose clock is not

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "core/store/background.hpp"
 #include "core/store/crc32c.hpp"
 #include "core/store/pack.hpp"
 #include "core/store/preserve.hpp"
@@ -267,15 +268,9 @@ void MapJournal::start(const std::shared_ptr<Batch>& batch) {
   const auto back = [self = self_, batch] {
     if (*self) (*self)->written(*batch);
   };
-  if (disk_->instant())
-    timer_ = home_.after(params_.write, [disk = disk_, batch, back] {
-      batch->run(*disk);
-      back();
-    });
-  else
-    home_.compute(
-        {.name = "map journal", .modelled = params_.write, .pool = PoolKind::io},
-        [disk = disk_, batch] { batch->run(*disk); }, [back](const Result<void>&) { back(); });
+  timer_ = store::run_in_background(
+      *disk_, home_, nullptr, {.name = "map journal", .modelled = params_.write, .pool = PoolKind::io},
+      [disk = disk_, batch] { batch->run(*disk); }, back);
 }
 
 void MapJournal::written(const Batch& batch) {

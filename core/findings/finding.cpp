@@ -23,11 +23,6 @@ bool valid_anchor(const Anchor& anchor) {
          });
 }
 
-bool valid_photo(const PhotoRef& photo) {
-  return photo.content != 0 && photo.bytes != 0 && photo.bytes <= PhotoRef::kMaxBytes &&
-         photo.thumbnail <= PhotoRef::kMaxThumbnail;
-}
-
 /// Reads what files of version 1 and 2 hold.
 void read_old(store::Unpacker& in, std::uint8_t version, Finding& f) {
   f.key.id = in.get<std::uint64_t>();
@@ -35,22 +30,21 @@ void read_old(store::Unpacker& in, std::uint8_t version, Finding& f) {
     f.revision = in.get<std::uint32_t>();
     f.withdrawn = in.flag();
   }
-  f.kind = in.text(Finding::kKind);
-  f.importance = in.get<std::uint8_t>();
-  for (double& value : f.position) value = in.number();
-  f.stamp = in.get<std::uint64_t>();
-  f.text = in.text(Finding::kText);
-  const auto data = in.bytes(Finding::kData);
-  f.data.assign(data.begin(), data.end());
+  unpack_content(in, f);
 }
 
 }  // namespace
+
+bool valid(const PhotoRef& photo) {
+  return photo.content != 0 && photo.bytes != 0 && photo.bytes <= PhotoRef::kMaxBytes &&
+         photo.thumbnail <= PhotoRef::kMaxThumbnail;
+}
 
 bool valid(const Finding& f) {
   return valid_robot(f.key.robot) && f.key.id != 0 && !f.kind.empty() && f.kind.size() <= Finding::kKind &&
          f.text.size() <= Finding::kText && f.data.size() <= Finding::kData &&
          std::all_of(f.position.begin(), f.position.end(), [](double v) { return std::isfinite(v); }) &&
-         (!f.anchor || valid_anchor(*f.anchor)) && (!f.photo || valid_photo(*f.photo));
+         (!f.anchor || valid_anchor(*f.anchor)) && (!f.photo || valid(*f.photo));
 }
 
 bool same_content(const Finding& a, const Finding& b) {

@@ -45,6 +45,9 @@ struct PhotoRef {
   bool operator==(const PhotoRef&) const = default;
 };
 
+/// Whether a photo has a name, and sizes within their bounds.
+bool valid(const PhotoRef& photo);
+
 /// Something that a robot found, with its kind, place and importance. Only its robot changes it; of two
 /// findings with the same key the one of the higher revision is valid.
 struct Finding {

@@ -55,6 +55,16 @@ void pack_fields(store::Packer& out, const Finding& f) {
   if (f.photo) out.put(f.photo->content).put(f.photo->bytes).put(f.photo->thumbnail);
 }
 
+void unpack_content(store::Unpacker& in, Finding& f) {
+  f.kind = in.text(Finding::kKind);
+  f.importance = in.get<std::uint8_t>();
+  for (double& value : f.position) value = in.number();
+  f.stamp = in.get<std::uint64_t>();
+  f.text = in.text(Finding::kText);
+  const auto data = in.bytes(Finding::kData);
+  f.data.assign(data.begin(), data.end());
+}
+
 void unpack_fields(store::Unpacker& in, std::uint8_t version, Finding& f) {
   f.key.id = in.get<std::uint64_t>();
   std::uint64_t flags = 0;
@@ -66,13 +76,7 @@ void unpack_fields(store::Unpacker& in, std::uint8_t version, Finding& f) {
     if (change >> bits > UINT32_MAX) in.fail();
   }
   f.withdrawn = (flags & kWithdrawn) != 0;
-  f.kind = in.text(Finding::kKind);
-  f.importance = in.get<std::uint8_t>();
-  for (double& value : f.position) value = in.number();
-  f.stamp = in.get<std::uint64_t>();
-  f.text = in.text(Finding::kText);
-  const auto data = in.bytes(Finding::kData);
-  f.data.assign(data.begin(), data.end());
+  unpack_content(in, f);
   if ((flags & kAnchor) != 0) f.anchor = anchor(in);
   if ((flags & kPhoto) != 0)
     f.photo = {in.get<std::uint64_t>(), in.get<std::uint32_t>(), in.get<std::uint16_t>()};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "core/store/background.hpp"
+
 namespace adit::findings {
 namespace {
 
@@ -188,21 +190,9 @@ void FindingStore::start(const std::shared_ptr<Batch>& batch) {
   const auto back = [self = self_, batch] {
     if (*self) (*self)->written(*batch);
   };
-  if (disk_->instant()) {
-    modelled_ = home_.after(params_.write, [disk = disk_, batch, back] {
-      batch->run(*disk);
-      back();
-    });
-  } else if (writer_) {
-    writer_->post([disk = disk_, batch, back, home = home_.inbox()] {
-      batch->run(*disk);
-      home->post_control(back);
-    });
-  } else {
-    home_.compute(
-        {.name = "findings", .modelled = params_.write, .pool = PoolKind::io},
-        [disk = disk_, batch] { batch->run(*disk); }, [back](const Result<void>&) { back(); });
-  }
+  modelled_ = store::run_in_background(
+      *disk_, home_, writer_, {.name = "findings", .modelled = params_.write, .pool = PoolKind::io},
+      [disk = disk_, batch] { batch->run(*disk); }, back);
 }
 
 void FindingStore::written(const Batch& batch) {

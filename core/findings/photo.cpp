@@ -220,6 +220,12 @@ std::uint64_t photo_hash(std::span<const std::uint8_t> bytes) {
   return hash;
 }
 
+Result<void> check_photo_size(std::size_t bytes) {
+  if (bytes <= Photo::kMaxInput) return {};
+  return {Reason::out_of_range, "a photo has " + std::to_string(bytes / 1024) + " kB, at most " +
+                                    std::to_string(Photo::kMaxInput / 1024) + " are read"};
+}
+
 Result<void> check_photo_header(std::span<const std::uint8_t> jpeg) {
   const Decoded outcome = is_jpeg(jpeg) ? read_header(jpeg) : Decoded::damaged;
   if (outcome != Decoded::good) return refusal_of(outcome, jpeg.size());
@@ -227,9 +233,7 @@ Result<void> check_photo_header(std::span<const std::uint8_t> jpeg) {
 }
 
 Result<Photo> make_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop) {
-  if (jpeg.size() > Photo::kMaxInput)
-    return Error{Reason::out_of_range, "a photo has " + std::to_string(jpeg.size() / 1024) + " kB, at most " +
-                                           std::to_string(Photo::kMaxInput / 1024) + " are read"};
+  if (const auto readable = check_photo_size(jpeg.size()); !readable) return readable.error();
   if (!is_jpeg(jpeg)) return refusal_of(Decoded::damaged, jpeg.size());
   Pixels pixels;
   if (const Decoded outcome = decode_into(pixels, jpeg, stop); outcome != Decoded::good)

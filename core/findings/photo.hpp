@@ -4,25 +4,34 @@
 #include <span>
 #include <stop_token>
 
+#include "core/findings/finding.hpp"
 #include "core/result/result.hpp"
-#include "core/store/state_file.hpp"
 
 namespace adit::findings {
 
 /// A photo of a finding: a JPEG that was decoded without a warning, and its thumbnail.
 struct Photo {
-  static constexpr std::size_t kMaxBytes = 256 << 10;      ///< Of the picture.
-  static constexpr std::size_t kMaxThumbnail = 2048;       ///< Bytes.
-  static constexpr std::size_t kMaxInput = 8 << 20;        ///< Of a JPEG that is decoded at all, bytes.
-  static constexpr std::uint32_t kMaxSide = 10'000;        ///< Of the same, pixels.
-  static constexpr std::uint64_t kMaxPixels = 40'000'000;  ///< Of the same.
-  static constexpr int kMaxScans = 32;                     ///< Of a progressive JPEG; cameras write 10.
+  static constexpr std::size_t kMaxBytes = PhotoRef::kMaxBytes;  ///< Of the picture.
+  static constexpr std::size_t kMaxThumbnail = 2048;             ///< Bytes.
+  static constexpr std::size_t kMaxInput = 8 << 20;              ///< Of a JPEG that is decoded at all, bytes.
+  static constexpr std::uint32_t kMaxSide = 10'000;              ///< Of the same, pixels.
+  static constexpr std::uint64_t kMaxPixels = 40'000'000;        ///< Of the same.
+  static constexpr int kMaxScans = 32;                           ///< Of a progressive JPEG; cameras write 10.
   static constexpr std::uint32_t kSide = 1600;  ///< Longer side of a picture that is recompressed, pixels.
 
   store::Bytes picture{};    ///< JPEG, at most kMaxBytes.
   store::Bytes thumbnail{};  ///< JPEG, at most kMaxThumbnail bytes.
   std::uint64_t hash{};      ///< Of the picture's bytes.
 };
+
+/// The name and sizes of a photo.
+inline PhotoRef ref_of(const Photo& photo) {
+  return {photo.hash, static_cast<std::uint32_t>(photo.picture.size()),
+          static_cast<std::uint16_t>(photo.thumbnail.size())};
+}
+
+/// Whether a JPEG of so many bytes is read at all. Error: out_of_range.
+Result<void> check_photo_size(std::size_t bytes);
 
 /// Checks a JPEG by decoding it, scales and recompresses it where it has more than Photo::kMaxBytes, and
 /// makes its thumbnail. Takes up to a second of one processor and 60 MB: run it as compute work.

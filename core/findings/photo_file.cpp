@@ -21,10 +21,7 @@ store::Bytes sealed(store::Packer& out) {
   return out.put(sum).bytes();
 }
 
-bool is_ref(const PhotoRef& ref) {
-  return ref.content != 0 && ref.bytes > 0 && ref.bytes <= PhotoRef::kMaxBytes && ref.thumbnail > 0 &&
-         ref.thumbnail <= PhotoRef::kMaxThumbnail;
-}
+bool is_ref(const PhotoRef& ref) { return valid(ref) && ref.thumbnail > 0; }
 
 void append_blocks(store::Bytes& out, PhotoPart part, const BlockBuffer& buffer) {
   for (std::size_t i = 0; i < buffer.blocks(); ++i) {

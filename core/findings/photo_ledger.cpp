@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/store/background.hpp"
 #include "core/store/pack.hpp"
 #include "core/store/preserve.hpp"
 
@@ -220,16 +221,10 @@ store::Bytes PhotoLedger::as_bytes() const {
 
 void PhotoLedger::save() {
   changed_ = false;
-  const auto write = [file = store::StateFile(disk_, kLedgerFile, kLedgerFormat), bytes = as_bytes()] {
-    (void)file.save(1, bytes);
-  };
-  if (disk_->instant())
-    timer_ = home_.after(kLedgerWrite, write);
-  else if (writer_)
-    writer_->post(write);
-  else
-    home_.compute({.name = "known photos", .modelled = kLedgerWrite, .pool = PoolKind::io}, write,
-                  [](const Result<void>&) {});
+  timer_ = store::run_in_background(*disk_, home_, writer_,
+                                    {.name = "known photos", .modelled = kLedgerWrite, .pool = PoolKind::io},
+                                    [file = store::StateFile(disk_, kLedgerFile, kLedgerFormat),
+                                     bytes = as_bytes()] { (void)file.save(1, bytes); });
 }
 
 }  // namespace adit::findings

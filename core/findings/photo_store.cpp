@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/store/background.hpp"
 #include "core/store/preserve.hpp"
 
 namespace adit::findings {
@@ -143,11 +144,7 @@ bool PhotoStore::put(const Photo& photo, std::uint8_t importance) {
   if (const auto known = all_.find(photo.hash); known != all_.end() && known->second.photo.complete())
     return true;
   Entry entry{.order = order_++};
-  entry.photo = {{photo.hash, static_cast<std::uint32_t>(photo.picture.size()),
-                  static_cast<std::uint16_t>(photo.thumbnail.size())},
-                 importance,
-                 BlockBuffer(photo.thumbnail),
-                 BlockBuffer(photo.picture)};
+  entry.photo = {ref_of(photo), importance, BlockBuffer(photo.thumbnail), BlockBuffer(photo.picture)};
   if (!insert(std::move(entry))) return false;
   changed(photo.hash, {}, {});
   return true;
@@ -317,21 +314,10 @@ void PhotoStore::start(const std::shared_ptr<Batch>& batch) {
   const auto back = [self = self_, batch] {
     if (*self) (*self)->written(*batch);
   };
-  if (disk_->instant()) {
-    modelled_ = home_.after(params_.write, [disk = disk_, batch, back] {
-      batch->run(*disk);
-      back();
-    });
-  } else if (writer_) {
-    writer_->post([disk = disk_, batch, back, home = home_.inbox()] {
-      batch->run(*disk);
-      home->post_control(back);
-    });
-  } else {
-    home_.compute(
-        {.name = "photos", .modelled = params_.write, .watchdog = 60s, .pool = PoolKind::io},
-        [disk = disk_, batch] { batch->run(*disk); }, [back](const Result<void>&) { back(); });
-  }
+  modelled_ = store::run_in_background(
+      *disk_, home_, writer_,
+      {.name = "photos", .modelled = params_.write, .watchdog = 60s, .pool = PoolKind::io},
+      [disk = disk_, batch] { batch->run(*disk); }, back);
 }
 
 void PhotoStore::written(const Batch& batch) {

@@ -11,6 +11,9 @@ namespace adit::nav {
 /// Before and behind a staircase a route keeps to its axis for so long, m.
 inline constexpr double kStairsApproach = 0.8;
 
+/// A height difference below this leads to no other floor, m: less than half a storey.
+inline constexpr double kSameStorey = 0.7;
+
 /// Whether a body climbs a staircase.
 inline bool climbs(const Platform& platform, const Staircase& stairs) {
   constexpr double kRounding = 5e-4;  // m

@@ -14,15 +14,14 @@ bool leads_the_same(const Staircase& a, const Staircase& b) {
 }
 
 std::optional<Staircase> between(std::span<const Staircase> stairs, double from, double to) {
-  constexpr double kSameFloor = 0.7;  // m: less than half a storey.
   std::optional<Staircase> best;
-  double least = std::abs(to - from) - kSameFloor;
+  double least = std::abs(to - from) - kSameStorey;
   for (const Staircase& each : stairs)
     for (const bool up : {true, false}) {
       const double begin = up ? each.floor_below() : each.floor_above();
       const double end = up ? each.floor_above() : each.floor_below();
       const double left = std::abs(to - end);
-      if (std::abs(begin - from) > kSameFloor || left >= least) continue;
+      if (std::abs(begin - from) > kSameStorey || left >= least) continue;
       least = left;
       best = each;
     }

@@ -148,7 +148,7 @@ void RoutePlanner::finish_ends(Route& route, const Eigen::Vector3d& from, const 
 std::optional<Staircase> RoutePlanner::closed_stairs(double from, double to) const {
   std::vector<Staircase> closed;
   for (const Staircase& stairs : map_.stairs())
-    if (!builder_.climbs(stairs)) closed.push_back(stairs);
+    if (!climbs(platform_, stairs)) closed.push_back(stairs);
   return between(closed, from, to);
 }
 

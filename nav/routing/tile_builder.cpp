@@ -29,7 +29,8 @@ std::uint8_t in_units(double cost) {
 // The required clearance is less than the body needs, because the nearest cell's centre lies beside the
 // middle of a gap. The local planner is exact and reports when the robot does not fit.
 TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
-    : limits_(Traversability::of(platform)),
+    : platform_(platform),
+      limits_(Traversability::of(platform)),
       hard_(std::max(platform.width / 2 - kAsideOfGap, kRouteCell)),
       comfort_(
           std::min(std::hypot(platform.length, platform.width) / 2 + params.comfort, kTileHalo * kRouteCell)),
@@ -38,7 +39,6 @@ TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
                                limits_.step + (platform.stairs ? Traversability::kRiser : 0.0))),
       doubtful_rise_(std::max(rise_, kTall * kObstacleHeightUnit)),
       unknown_cost_(static_cast<float>(params.unknown_cost)),
-      climbs_stairs_(platform.stairs),
       through_unknown_(params.through_unknown),
       doubtful_cost_(in_units(params.doubtful_cost)),
       hole_cost_(in_units(params.doubtful_hole_cost)) {
@@ -129,7 +129,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
 
 void TileBuilder::lay_stairs(const Staircase& stairs, const Tile& tile) {
   constexpr float kSame = 0.5f;  // m: ground at other heights is above or below the staircase.
-  const bool climbable = climbs(stairs);
+  const bool climbable = climbs(platform_, stairs);
   visit_cells(stairs, climbable ? kRouteCell : 0.0, [&](int ix, int iy, const OnStairs& place) {
     const int x = ix - (tile.tx * kTileSide - kTileHalo), y = iy - (tile.ty * kTileSide - kTileHalo);
     if (x < 0 || y < 0 || x >= kWindow || y >= kWindow) return;
@@ -150,7 +150,7 @@ void TileBuilder::lay_stairs(const Staircase& stairs, const Tile& tile) {
 // On a staircase and before its ends a place costs the more the farther it is from the axis.
 void TileBuilder::price_aside(const Staircase& stairs, Tile& tile) const {
   constexpr double kAtSide = 6.0;  // Of a metre along a side, beside its length.
-  if (!climbs(stairs)) return;
+  if (!climbs(platform_, stairs)) return;
   visit_cells(stairs, kStairsApproach, [&](int ix, int iy, const OnStairs& place) {
     if (tile_of(ix) != tile.tx || tile_of(iy) != tile.ty) return;
     const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
@@ -206,7 +206,7 @@ void TileBuilder::find_steps() {
       if (height < lowest) lowest = height;  // False for NaN.
       if (height > highest) highest = height;
     }
-  if (climbs_stairs_ || highest - lowest <= rise_) return;
+  if (platform_.stairs || highest - lowest <= rise_) return;
   const bool high = highest - lowest > kTall * kObstacleHeightUnit;
   for (int cells = 2; cells < (all_sure_ || !high ? kSteep : kLongSteep); ++cells)
     for (int i = 0; i < kWindow; ++i)

@@ -26,11 +26,6 @@ class TileBuilder {
   static bool solid(const GroundCell& cell) {
     return cell.blocked && (cell.sure || cell.obstacle_height > kTall);
   }
-  /// Whether the body climbs a staircase.
-  bool climbs(const Staircase& stairs) const {
-    constexpr double kRounding = 5e-4;  // m
-    return climbs_stairs_ && stairs.rise <= limits_.step + kRounding;
-  }
   /// Maximum height difference between two neighbouring cells, m: a larger one is a step.
   float most_rise(const GroundCell& a, const GroundCell& b) const {
     if (!said(a) || !said(b)) return kFloorSeparation;
@@ -88,10 +83,11 @@ class TileBuilder {
   /// Packs a distance and a cell into one number that sorts in the same order.
   static std::uint64_t entry(float distance, int cell);
 
+  Platform platform_;
   Traversability limits_;
   double hard_, comfort_, narrow_cost_;  // Required and preferred clearance, m.
   float rise_, doubtful_rise_, unknown_cost_;
-  bool climbs_stairs_, through_unknown_;
+  bool through_unknown_;
   std::uint8_t doubtful_cost_, hole_cost_;                         // Per length, as Tile::cost.
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // By squared clearance in cells.
   // NaN: unknown. `seen_height_` has those, too, that prove nothing.

@@ -254,12 +254,11 @@ void TerrainMap::set_stairs(std::span<const Staircase> stairs) {
 }
 
 bool TerrainMap::is_on_stairs(const Eigen::Vector2f& at) const {
-  constexpr double kSameFloor = 0.7;  // m: less than half a storey.
   // The cell of the edge and the one before it, which is written with a drop.
   constexpr double kEdge = 2 * double{GroundGrid::kCell};
   const double z = last_body_.position.z();
   return std::ranges::any_of(stairs_, [&](const Staircase& stairs) {
-    if (z < stairs.floor_below() - kSameFloor || z > stairs.floor_above() + kSameFloor) return false;
+    if (z < stairs.floor_below() - kSameStorey || z > stairs.floor_above() + kSameStorey) return false;
     const OnStairs place = on_stairs(stairs, double{at.x()}, double{at.y()});
     return place.along >= -kStairsApproach && place.along <= length_of(stairs) + kEdge &&
            std::abs(place.across) <= stairs.width / 2;

@@ -60,11 +60,7 @@ Result<std::optional<Detection>> detection_of(const Detection3D& object, const s
   if (out.stamp == 0) out.stamp = nanoseconds_of(all);
   out.position = origin_of((*best)->pose().pose());
   if (out.position.isZero(0.0)) out.position = origin_of(object.bbox().center());
-  const bool still = out.frame == "map" || out.frame == "odom";
-  const double farthest = still ? kFarthestInMap : kFarthestObject;
-  if (!out.position.allFinite() || out.position.norm() > farthest)
-    return Error{Reason::malformed, "the place of '" + shown(class_id) + "' in '" + shown(out.frame) +
-                                        "' is no number, or too far away"};
+  if (const auto good = check_place(out, class_id); !good) return good.error();
   if (out.position.isZero(0.0))
     return Error{
         Reason::malformed,
@@ -81,6 +77,14 @@ std::string kind_of(const std::string& class_id) {
     if (!plain && c != '-' && c != '.') c = '_';
   }
   return kind == findings::kStairs ? "staircase" : kind;
+}
+
+Result<void> check_place(const Detection& object, const std::string& name) {
+  const bool still = object.frame == "map" || object.frame == "odom";
+  if (object.position.allFinite() && object.position.norm() <= (still ? kFarthestInMap : kFarthestObject))
+    return {};
+  return {Reason::malformed, "the place of '" + shown(name) + "' in '" + shown(object.frame) +
+                                 "' is no number, or too far away"};
 }
 
 std::string shown(const std::string& text) {

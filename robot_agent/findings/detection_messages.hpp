@@ -28,6 +28,10 @@ Result<std::vector<Detection>> detections_of(const vision_msgs::msg::Detection3D
                                              const std::string& source, const DetectionParams& params,
                                              const std::function<void(const Error&)>& refuse);
 
+/// Whether an object's place is a number, and not too far from the origin of its frame. `name`: of the
+/// object, for the error, which is malformed.
+Result<void> check_place(const Detection& object, const std::string& name);
+
 /// A text of a stranger for operators: printable, at most 40 bytes.
 std::string shown(const std::string& text);
 

@@ -89,8 +89,8 @@ Result<void> DetectionReporter::report(Track& track, std::uint8_t importance, Ti
     track.reported_score = track.score;
   };
   if (track.finding == 0) {
-    if (!may_report(now))
-      return {Reason::queue_full, "more than " + std::to_string(kBurst) +
+    if (!new_findings_.take(now))
+      return {Reason::queue_full, "more than " + std::to_string(ReportRate::kBurst) +
                                       " new objects at once and one a second: '" + track.kind + "' waits"};
     const auto taken = findings_.report(finding_of(track, importance, now));
     if (!taken) return taken.error();
@@ -138,14 +138,6 @@ findings::Finding DetectionReporter::finding_of(const Track& track, std::uint8_t
           .position = {track.place.x(), track.place.y(), track.place.z()},
           .stamp = to_stamp(now),
           .text = track.text.empty() ? score_text(track.score) : track.text};
-}
-
-bool DetectionReporter::may_report(Time now) {
-  if (filled_) tokens_ = std::min<double>(kBurst, tokens_ + seconds(now - *filled_));
-  filled_ = now;
-  if (tokens_ < 1.0) return false;
-  tokens_ -= 1.0;
-  return true;
 }
 
 }  // namespace adit::agent

@@ -9,6 +9,7 @@
 #include "core/time/time.hpp"
 #include "robot_agent/findings/detection.hpp"
 #include "robot_agent/findings/finding_source.hpp"
+#include "robot_agent/findings/report_rate.hpp"
 
 namespace adit::agent {
 
@@ -30,7 +31,6 @@ class DetectionReporter {
   static constexpr Duration kOut = 2s;    ///< An object that was not seen for so long is out of view.
   static constexpr Duration kRetry = 5s;  ///< After a finding that had no room.
   static constexpr std::size_t kTracks = 256;
-  static constexpr int kBurst = 20;  ///< New findings at once; then one each second.
 
   /// `findings` must outlive it.
   DetectionReporter(DetectionParams params, std::string robot, FindingSource& findings)
@@ -61,14 +61,12 @@ class DetectionReporter {
   std::uint64_t known(const Track& track, Time now) const;
   Result<void> report(Track& track, std::uint8_t importance, Time now);
   findings::Finding finding_of(const Track& track, std::uint8_t importance, Time now) const;
-  bool may_report(Time now);
 
   DetectionParams params_;
   std::string robot_;
   FindingSource& findings_;
   std::list<Track> tracks_{};
-  double tokens_{kBurst};  ///< New findings that may be reported now.
-  std::optional<Time> filled_{};
+  ReportRate new_findings_{};
 };
 
 }  // namespace adit::agent

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/store/background.hpp"
 #include "core/store/pack.hpp"
 #include "core/store/preserve.hpp"
 #include "core/store/state_file.hpp"
@@ -99,16 +100,9 @@ void KnownFindings::save() {
     out.put(id).put(static_cast<std::uint16_t>(has.size()));
     for (const auto& [station, revision] : has) out.put(station).put(revision);
   }
-  const auto write = [file = store::StateFile(disk_, kFile, kFormat), bytes = out.bytes()] {
-    (void)file.save(1, bytes);
-  };
-  if (disk_->instant())
-    timer_ = home_.after(kWrite, write);
-  else if (writer_)
-    writer_->post(write);
-  else
-    home_.compute({.name = "known findings", .modelled = kWrite, .pool = PoolKind::io}, write,
-                  [](const Result<void>&) {});
+  timer_ = store::run_in_background(
+      *disk_, home_, writer_, {.name = "known findings", .modelled = kWrite, .pool = PoolKind::io},
+      [file = store::StateFile(disk_, kFile, kFormat), bytes = out.bytes()] { (void)file.save(1, bytes); });
 }
 
 }  // namespace adit::agent

@@ -162,8 +162,7 @@ void ReportInput::decoded(std::uint64_t id, const std::string& topic, const Resu
     if (inputs_.size() >= kMaxInputs) inputs_.clear();
     inputs_[id] = made->input;
     if (photos_.put(photo, finding.importance))
-      finding.photo = findings::PhotoRef{photo.hash, static_cast<std::uint32_t>(photo.picture.size()),
-                                         static_cast<std::uint16_t>(photo.thumbnail.size())};
+      finding.photo = findings::ref_of(photo);
     else
       refusals_.refuse(topic, {Reason::queue_full, "no room for one more photo"});
   }
@@ -173,8 +172,8 @@ void ReportInput::decoded(std::uint64_t id, const std::string& topic, const Resu
 void ReportInput::put(const std::string& topic, findings::Finding finding) {
   const findings::Finding* stored = findings_.newest(finding.key.id);
   if (stored == nullptr) {
-    if (!may_report(home_.now()))
-      return refusals_.refuse(topic, {Reason::queue_full, "more than " + std::to_string(kBurst) +
+    if (!new_findings_.take(home_.now()))
+      return refusals_.refuse(topic, {Reason::queue_full, "more than " + std::to_string(ReportRate::kBurst) +
                                                               " new reports at once and one a second"});
     if (const auto taken = findings_.report(std::move(finding)); !taken)
       refusals_.refuse(topic, taken.error());
@@ -183,14 +182,6 @@ void ReportInput::put(const std::string& topic, findings::Finding finding) {
   if (is_alike(*stored, finding)) return;
   if (const auto changed = findings_.update(std::move(finding)); !changed)
     refusals_.refuse(topic, changed.error());
-}
-
-bool ReportInput::may_report(Time now) {
-  if (filled_) tokens_ = std::min<double>(kBurst, tokens_ + seconds(now - *filled_));
-  filled_ = now;
-  if (tokens_ < 1.0) return false;
-  tokens_ -= 1.0;
-  return true;
 }
 
 void ReportInput::look(const wire::Participant& wire) {

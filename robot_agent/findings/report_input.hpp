@@ -13,6 +13,7 @@
 #include "robot_agent/findings/finding_source.hpp"
 #include "robot_agent/findings/object_placer.hpp"
 #include "robot_agent/findings/report_messages.hpp"
+#include "robot_agent/findings/report_rate.hpp"
 #include "robot_agent/findings/topic_refusals.hpp"
 
 namespace adit::agent {
@@ -28,7 +29,6 @@ class ReportInput {
   static constexpr std::size_t kPhotos = 4;     ///< Photos that wait for their decoding.
   static constexpr Duration kFramesCome = 3s;   ///< After the first message, /tf_static may still come.
   static constexpr double kMoved = 0.3;         ///< Smallest motion that changes a finding, m.
-  static constexpr int kBurst = 20;             ///< New findings at once; then one each second.
 
   /// All must outlive it.
   ReportInput(ReportParams params, const Platform& platform, std::shared_ptr<StaticFrames> frames,
@@ -68,7 +68,6 @@ class ReportInput {
   void decoded(std::uint64_t id, const std::string& topic, const Result<Made>& made);
   /// Reports the finding, or changes it if it differs.
   void put(const std::string& topic, findings::Finding finding);
-  bool may_report(Time now);
 
   ReportParams params_;
   ObjectPlacer placer_;
@@ -83,8 +82,7 @@ class ReportInput {
       decoding_{};                                   ///< Findings whose photo is decoded, newest content.
   std::map<std::uint64_t, std::uint64_t> inputs_{};  ///< Hash of the last JPEG of each finding; bounded.
   std::optional<Time> first_{};                      ///< When the first message came.
-  double tokens_{kBurst};                            ///< New findings that may be reported now.
-  std::optional<Time> filled_{};
+  ReportRate new_findings_{};
   std::shared_ptr<bool> alive_{std::make_shared<bool>(true)};
 };
 

@@ -22,10 +22,8 @@ std::string cut_text(const std::string& text) {
 
 void take_photo(const sensor_msgs::msg::CompressedImage& image, Report& report) {
   if (image.data().empty()) return;
-  if (image.data().size() > findings::Photo::kMaxInput)
-    report.no_photo = Error{Reason::out_of_range,
-                            "a photo has " + std::to_string(image.data().size() / 1024) + " kB, at most " +
-                                std::to_string(findings::Photo::kMaxInput / 1024) + " are read"};
+  if (const auto readable = findings::check_photo_size(image.data().size()); !readable)
+    report.no_photo = readable.error();
   else
     report.jpeg = std::make_shared<const store::Bytes>(image.data());
 }
@@ -63,11 +61,7 @@ Result<Report> report_of(const visualization_msgs::msg::Marker& message) {
   out.object.stamp = nanoseconds_of(message.header());
   const auto& at = message.pose().position();
   out.object.position = {at.x(), at.y(), at.z()};
-  const bool still = out.object.frame == "map" || out.object.frame == "odom";
-  if (!out.object.position.allFinite() ||
-      out.object.position.norm() > (still ? kFarthestInMap : kFarthestObject))
-    return Error{Reason::malformed, "the place of '" + shown(ns) + "' in '" + shown(out.object.frame) +
-                                        "' is no number, or too far away"};
+  if (const auto good = check_place(out.object, ns); !good) return good.error();
   out.object.text = cut_text(message.text());
   take_photo(message.texture(), out);
   return out;

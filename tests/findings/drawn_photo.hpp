@@ -60,9 +60,4 @@ inline Photo drawn_photo(std::uint32_t kilobytes = 20, std::uint64_t seed = 1) {
       .value();
 }
 
-inline PhotoRef ref_of(const Photo& photo) {
-  return {photo.hash, static_cast<std::uint32_t>(photo.picture.size()),
-          static_cast<std::uint16_t>(photo.thumbnail.size())};
-}
-
 }  // namespace adit::findings
