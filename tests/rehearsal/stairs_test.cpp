@@ -190,5 +190,38 @@ TEST(StairsRun, LegsClimbThreeFlights) {
   expect_ok(outcome->report);
 }
 
+/// A wheeled robot with a lidar of 32 rings looks at the first flight, and is sent to the upper floor.
+Scenario wheels_below(std::uint64_t world, int duration, const std::string& expectations) {
+  auto scenario = parse_scenario(
+      "world: {generate: flights, seed: " + std::to_string(world) +
+          "}\nduration: " + std::to_string(duration) +
+          "\nlink: wifi\nlidar: full\nperception: odometry\n"
+          "robots:\n  - {id: r1, platform: wheeled, pose: [6, 1.2, 0]}\n"
+          "basestations:\n  - {id: op1, pose: [4, 6]}\n"
+          "script:\n  - {at: 2, by: op1, do: take r1}\n  - {at: 3, by: op1, do: goto r1 10.5 1.2 0}\n"
+          "  - {at: 14, by: op1, do: goto r1 20 8 4.8 --budget none}\n"
+          "expect:\n  - {always: no_collision}\n" +
+          expectations,
+      "wheels_below.yaml");
+  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
+  Platform& platform = scenario->robots[0].settings.platform;
+  platform.lidar_rings = 32;
+  platform.lidar_lowest = -25.0;
+  return *scenario;
+}
+
+TEST(StairsRun, WheelsRefuseAGoalToWhichOnlyStairsLead) {
+  for (const std::uint64_t world : {1, 3, 7}) {
+    const Scenario scenario = wheels_below(world, 60, "  - {by: 58, robot: r1, told: goal_over_stairs}\n");
+    RunParams params;
+    params.make_agent = *make_agent_factory("");
+    params.seed = 1;
+    params.ended = once_decided();
+    const auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text;
+    expect_ok(outcome->report);
+  }
+}
+
 }  // namespace
 }  // namespace adit::sim
