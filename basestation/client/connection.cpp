@@ -37,6 +37,12 @@ std::int64_t Connection::teleop(const std::string& robot) {
   return next_++;
 }
 
+std::int64_t Connection::photo(const std::string& id, findings::PhotoPart part) {
+  const char* which = part == findings::PhotoPart::picture ? "picture" : "thumbnail";
+  send(line_of({{"id", next_}, {"photo", id}, {"part", which}}));
+  return next_++;
+}
+
 void Connection::stick(std::int64_t id, double vx, double vy, double wz) {
   send(line_of({{"id", id}, {"stick", {vx, vy, wz}}}));
 }

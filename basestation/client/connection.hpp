@@ -11,6 +11,7 @@
 #include "basestation/model/map_tiles.hpp"
 #include "basestation/model/outcome.hpp"
 #include "basestation/model/world.hpp"
+#include "core/findings/photo_file.hpp"
 
 namespace adit::station {
 class WorldBuilder;
@@ -44,6 +45,8 @@ class Connection {
   std::int64_t teleop(const std::string& robot);
   /// The stick of a teleop: m/s, m/s, rad/s.
   void stick(std::int64_t id, double vx, double vy, double wz);
+  /// Asks for the bytes of a part of a photo. `id`: FoundPhoto::id.
+  std::int64_t photo(const std::string& id, findings::PhotoPart part);
   void cancel(std::int64_t id);
   void hello();
   /// Asks for the state whenever it changes: on_world is called with each.

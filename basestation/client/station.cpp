@@ -98,6 +98,10 @@ Station::RequestId Station::execute(const std::string& line, Done done) {
   return ask([line](Connection& connection) { return connection.execute(line); }, std::move(done));
 }
 
+Station::RequestId Station::photo(const std::string& id, findings::PhotoPart part, Done done) {
+  return ask([id, part](Connection& connection) { return connection.photo(id, part); }, std::move(done));
+}
+
 Station::RequestId Station::drive(const std::string& robot, Done done) {
   return ask([robot](Connection& connection) { return connection.teleop(robot); }, std::move(done));
 }

@@ -22,6 +22,7 @@
 #include "basestation/model/outcome.hpp"
 #include "basestation/model/stick_velocity.hpp"
 #include "basestation/model/world.hpp"
+#include "core/findings/photo_file.hpp"
 #include "core/result/result.hpp"
 
 namespace adit::station::client {
@@ -79,6 +80,8 @@ class Station {
 
   /// Runs a command line of the grammar.
   RequestId execute(const std::string& line, Done done);
+  /// Asks for the bytes of a part of a photo; photo_of() reads the outcome. `id`: FoundPhoto::id.
+  RequestId photo(const std::string& id, findings::PhotoPart part, Done done);
   /// Drives a robot by a stick until cancelled; zero is sent if the stick is not renewed for 0.25 s.
   RequestId drive(const std::string& robot, Done done);
   void stick(RequestId drive, const StickVelocity& velocity);

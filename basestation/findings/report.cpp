@@ -35,7 +35,7 @@ double age(const Finding& finding, const Fleet& fleet) {
 FoundPhoto found_photo(const findings::PhotoRef& ref, const findings::PhotoStore& photos) {
   const findings::PhotoState state = photos.state(ref.content);
   const PhotoHere part = state.thumbnail ? PhotoHere::thumbnail : PhotoHere::none;
-  return {state.whole ? PhotoHere::whole : part, state.percent, ref.bytes};
+  return {state.whole ? PhotoHere::whole : part, state.percent, ref.bytes, findings::id_text(ref.content)};
 }
 
 std::string verdict_text(const FoundItem& item) {

@@ -19,6 +19,7 @@
 #include "basestation/model/json.hpp"
 #include "basestation/model/json_reader.hpp"
 #include "basestation/model/outcome.hpp"
+#include "basestation/model/photo_bytes.hpp"
 #include "core/command/parse.hpp"
 #include "core/command/words.hpp"
 
@@ -247,12 +248,31 @@ void Server::ask_map(std::uint64_t number, Client& client, const json& wanted) {
   if (!client.map_asked) answer(client, {{"wrong", "the station has too much to do"}});
 }
 
+void Server::ask_photo(std::uint64_t number, Client& client, std::int64_t id, const std::string& photo,
+                       const std::string& part) {
+  using findings::PhotoPart;
+  const auto content = photo_id_from(photo);
+  if (!content || (part != "picture" && part != "thumbnail"))
+    return answer(client, {{"wrong", "a photo has sixteen hexadecimal digits, and a part"}});
+  client.open[id] = std::make_shared<std::uint64_t>(0);
+  const auto reply = [this, number, id](const json& outcome) {
+    hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", outcome}}});
+  };
+  const PhotoPart which = part == "picture" ? PhotoPart::picture : PhotoPart::thumbnail;
+  const bool posted = strand_->post([this, reply, content, which] {
+    const store::Bytes* bytes = station_->photo(*content, which);
+    reply(json_of(bytes ? Outcome{.json = photo_json(*bytes)}
+                        : failed_outcome(kExitRefused, {Reason::cannot_read, "the photo is not here"})));
+  });
+  if (!posted) reply(busy("the station has too much to do"));
+}
+
 void Server::handle(std::uint64_t number, Client& client, const std::string& text) {
   const json request = json::parse(text, nullptr, false);
   const auto wrong = [&](const std::string& why) { answer(client, {{"wrong", why}}); };
   if (!request.is_object()) return wrong("a JSON object was expected");
   std::int64_t id = 0, cancelled = 0;
-  std::string front_end, folder = "/", line, robot, misfit;
+  std::string front_end, folder = "/", line, robot, photo, part, misfit;
   std::array<double, 3> stick{};
   JsonReader in(request, misfit);
   in.read("id", id);
@@ -261,6 +281,8 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& tex
   in.read("folder", folder);
   in.read("do", line);
   in.read("teleop", robot);
+  in.read("photo", photo);
+  in.read("part", part);
   in.read("stick", stick);
   if (!misfit.empty()) return wrong("'" + misfit + "' does not fit");
   if (in.has("hello")) return answer(client, {{"hello", hello_}});
@@ -301,11 +323,13 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& tex
       strand_->post([station = station_, h = found->second, velocity] { station->stick(*h, velocity); });
     return;
   }
-  if (!in.has("do") && !in.has("teleop")) return wrong("no request that this version knows");
+  if (!in.has("do") && !in.has("teleop") && !in.has("photo"))
+    return wrong("no request that this version knows");
   if (in.has("teleop") && !command::valid_name(robot)) return wrong("teleop wants a robot's name");
   if (client.open.contains(id)) return wrong("the id is in use");
   if (client.open.size() >= kMaxOpen)
     return answer(client, {{"id", id}, {"outcome", busy("this program asks for too much at once")}});
+  if (in.has("photo")) return ask_photo(number, client, id, photo, part);
   begin(number, client, id, line, robot);
 }
 

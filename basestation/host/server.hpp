@@ -30,6 +30,10 @@ namespace adit::station::host {
 ///     {"map": {"run": N, "revision": M, "look": [x, y, radius]}}
 ///                                      -> {"map": {...}, "more": true|false}: the tiles that changed since;
 ///                                      `look`, which may be missing: what robots are to send first
+///     {"id": 3, "photo": "HASH", "part": "picture"}
+///                                      -> {"id": 3, "outcome": {...}} with the bytes
+///                                      (model/photo_bytes.hpp); `part` may also be "thumbnail"; `HASH`:
+///                                      FoundPhoto::id
 ///     {"hello": true}                  -> {"hello": {...}}
 ///     {"front_end": "watch", "folder": "/home/op"}
 ///                                      names the client for the others; files in its lines are relative to
@@ -105,6 +109,9 @@ class Server {
   void begin(std::uint64_t number, Client& client, std::int64_t id, const std::string& line,
              const std::string& robot);
   void ask_map(std::uint64_t number, Client& client, const nlohmann::json& wanted);
+  /// Answers the client's request `id` for a part of a photo.
+  void ask_photo(std::uint64_t number, Client& client, std::int64_t id, const std::string& photo,
+                 const std::string& part);
   /// Queues an answer; a client with too many unread ones is cut off.
   void answer(Client& client, const nlohmann::json& object);
   void hand_over(Reply reply);

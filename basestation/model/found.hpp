@@ -22,6 +22,7 @@ struct FoundPhoto {
   PhotoHere here{PhotoHere::none};
   std::uint8_t percent{};  ///< Of the whole photo that is here, [0, 100].
   std::uint32_t bytes{};   ///< Of the whole photo.
+  std::string id{};        ///< Hash of the whole photo, sixteen hexadecimal digits.
   bool operator==(const FoundPhoto&) const = default;
 };
 

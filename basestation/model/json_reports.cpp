@@ -130,6 +130,7 @@ void fields(Io& io, Of<Io, FoundPhoto>& photo) {
   io.word("here", photo.here, PhotoHere::whole, [](PhotoHere here) { return to_string(here); });
   io.field("percent", photo.percent);
   io.field("bytes", photo.bytes);
+  io.field("id", photo.id);
 }
 
 template <class Io>

@@ -73,6 +73,10 @@ class Station {
   std::size_t findings() const { return content_.desk().all().size(); }
   /// Findings whose whole photo is here.
   std::size_t photos() const { return content_.whole_photos(); }
+  /// The bytes of a part of a photo; null: it is not here, or not all of it.
+  const store::Bytes* photo(std::uint64_t content, findings::PhotoPart part) const {
+    return content_.photos().find(content, part);
+  }
   /// The staircases of the map, computed from all findings.
   StairsReport stairs() const;
   /// True after `down`, until `up`.

@@ -17,12 +17,6 @@ namespace {
 constexpr long kDecoderMemory = 64L << 20;  // Bytes.
 constexpr std::uint32_t kThumbnailSide = 128;
 
-/// Pixels of a picture, three bytes each.
-struct Pixels {
-  std::uint32_t width{}, height{};
-  std::vector<std::uint8_t> rgb{};
-};
-
 /// The library's handler of errors: it jumps out of the call instead of ending the process.
 struct JpegErrors {
   jpeg_error_mgr base{};
@@ -68,7 +62,7 @@ Decoded begin_decoder(jpeg_decompress_struct& decoder, std::span<const std::uint
   return Decoded::good;
 }
 
-Decoded decode_into(Pixels& pixels, std::span<const std::uint8_t> jpeg, const std::stop_token& stop) {
+Decoded decode_into(PhotoPixels& pixels, std::span<const std::uint8_t> jpeg, const std::stop_token& stop) {
   jpeg_decompress_struct decoder{};
   JpegErrors errors{};
   jpeg_progress_mgr progress{};
@@ -116,7 +110,7 @@ Decoded read_header(std::span<const std::uint8_t> jpeg) {
 }
 
 /// Encodes pixels. The buffer is the library's: its owner frees it, also after a failure.
-bool encode_into(unsigned char** buffer, unsigned long* size, const Pixels& pixels, int quality) {
+bool encode_into(unsigned char** buffer, unsigned long* size, const PhotoPixels& pixels, int quality) {
   jpeg_compress_struct encoder{};
   JpegErrors errors{};
   encoder.err = quiet_errors(errors);
@@ -144,7 +138,7 @@ bool encode_into(unsigned char** buffer, unsigned long* size, const Pixels& pixe
   return true;
 }
 
-store::Bytes to_jpeg(const Pixels& pixels, int quality) {
+store::Bytes to_jpeg(const PhotoPixels& pixels, int quality) {
   unsigned char* buffer = nullptr;
   unsigned long size = 0;
   const bool good = encode_into(&buffer, &size, pixels, quality);
@@ -155,10 +149,10 @@ store::Bytes to_jpeg(const Pixels& pixels, int quality) {
 }
 
 /// The picture with its longer side at most so long, each pixel the mean of those that it covers.
-Pixels scaled(const Pixels& from, std::uint32_t side) {
+PhotoPixels scaled(const PhotoPixels& from, std::uint32_t side) {
   const std::uint32_t longer = std::max(from.width, from.height);
   if (longer <= side) return from;
-  Pixels to{std::max(1U, from.width * side / longer), std::max(1U, from.height * side / longer), {}};
+  PhotoPixels to{std::max(1U, from.width * side / longer), std::max(1U, from.height * side / longer), {}};
   to.rgb.resize(std::size_t{3} * to.width * to.height);
   for (std::uint32_t y = 0; y < to.height; ++y) {
     const std::uint32_t y0 = y * from.height / to.height,
@@ -179,7 +173,8 @@ Pixels scaled(const Pixels& from, std::uint32_t side) {
 }
 
 /// The best JPEG of the picture within so many bytes; empty: there is none.
-store::Bytes compressed(Pixels pixels, std::uint32_t side, std::size_t most, std::span<const int> qualities) {
+store::Bytes compressed(PhotoPixels pixels, std::uint32_t side, std::size_t most,
+                        std::span<const int> qualities) {
   for (; side >= 8; side = side * 2 / 3) {
     pixels = scaled(pixels, side);
     for (const int quality : qualities)
@@ -232,12 +227,19 @@ Result<void> check_photo_header(std::span<const std::uint8_t> jpeg) {
   return {};
 }
 
-Result<Photo> make_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop) {
+Result<PhotoPixels> decode_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop) {
   if (const auto readable = check_photo_size(jpeg.size()); !readable) return readable.error();
   if (!is_jpeg(jpeg)) return refusal_of(Decoded::damaged, jpeg.size());
-  Pixels pixels;
+  PhotoPixels pixels;
   if (const Decoded outcome = decode_into(pixels, jpeg, stop); outcome != Decoded::good)
     return refusal_of(outcome, jpeg.size());
+  return pixels;
+}
+
+Result<Photo> make_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop) {
+  auto decoded = decode_photo(jpeg, stop);
+  if (!decoded) return decoded.error();
+  PhotoPixels pixels = std::move(*decoded);
   Photo photo;
   constexpr std::array kGood{85, 70, 55, 40};
   constexpr std::array kSmall{55, 40, 25};

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <stop_token>
+#include <vector>
 
 #include "core/findings/finding.hpp"
 #include "core/result/result.hpp"
@@ -24,6 +25,12 @@ struct Photo {
   std::uint64_t hash{};      ///< Of the picture's bytes.
 };
 
+/// The pixels of a photo.
+struct PhotoPixels {
+  std::uint32_t width{}, height{};
+  std::vector<std::uint8_t> rgb{};  ///< Three bytes each, row by row without a gap.
+};
+
 /// The name and sizes of a photo.
 inline PhotoRef ref_of(const Photo& photo) {
   return {photo.hash, static_cast<std::uint32_t>(photo.picture.size()),
@@ -39,6 +46,10 @@ Result<void> check_photo_size(std::size_t bytes);
 /// Errors: malformed (no JPEG, truncated, damaged, CMYK), out_of_range (beyond the bounds of Photo),
 /// cancelled.
 Result<Photo> make_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop = {});
+
+/// Decodes a JPEG. One whose longer side has more than Photo::kSide pixels is scaled down, to at least that
+/// many. Takes as long as make_photo(). Errors: as of make_photo().
+Result<PhotoPixels> decode_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop = {});
 
 /// Checks the header of a JPEG alone: that it is one, and within the bounds of Photo. It costs little; the
 /// rest of the JPEG may be damaged. Errors: as of make_photo().

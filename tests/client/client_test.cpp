@@ -95,6 +95,16 @@ TEST_F(ClientTest, HasTheWorldAndTheOutcomesOfItsCommands) {
   EXPECT_EQ(owner_->all().commands.front().front_end, "gui");
 }
 
+TEST_F(ClientTest, APhotoThatIsNotHereIsRefusedAndIsNoCommand) {
+  std::optional<CommandOutcome> outcome;
+  station_->photo("00000000000000ff", findings::PhotoPart::thumbnail,
+                  [&](const CommandOutcome& ended) { outcome = ended; });
+  ASSERT_TRUE(owner_->until([&] { return outcome && owner_->all().world; }));
+  EXPECT_EQ(outcome->exit_code, kExitRefused);
+  EXPECT_THAT(outcome->error, HasSubstr("not here"));
+  EXPECT_TRUE(owner_->all().commands.empty());
+}
+
 TEST_F(ClientTest, IsPokedOnceUntilItTakesAndLosesNothingMeanwhile) {
   ASSERT_TRUE(owner_->until([&] { return owner_->all().world; }));
   const int before = owner_->pokes();

@@ -6,13 +6,16 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <future>
 
 #include "basestation/host/outbox.hpp"
 #include "basestation/model/json.hpp"
+#include "basestation/model/photo_bytes.hpp"
 #include "core/command/words.hpp"
 #include "core/time/random.hpp"
 #include "tests/client/server_bench.hpp"
+#include "tests/findings/drawn_photo.hpp"
 
 namespace adit::station::host {
 namespace {
@@ -163,6 +166,33 @@ TEST_F(ServerTest, APlaceToLookAtThatDoesNotFitIsRefused) {
   EXPECT_TRUE(ask({1.5, -2, 20}).contains("map"));
 }
 
+TEST_F(ServerTest, GivesThePartsOfAPhotoThatAreHere) {
+  const store::Bytes jpeg = findings::draw({});
+  const std::string file = folder() + "/gas.jpg";
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
+  Talk talk(path());
+  talk.say({{"id", 1}, {"do", "finding add gas 1 2 --photo " + file}});
+  ASSERT_EQ(talk.next("outcome")["outcome"]["exit"], 0);
+  const std::string id = findings::id_text(findings::photo_hash(jpeg));
+  const auto ask = [&](const json& photo, const json& part) {
+    talk.say({{"id", 2}, {"photo", photo}, {"part", part}});
+    for (json got = talk.next(""); !got.is_null(); got = talk.next(""))
+      if (got.contains("wrong") || got.contains("outcome")) return got;
+    return json();
+  };
+  const auto bytes_of = [&](const json& got) { return photo_of(outcome_from(got["outcome"]).value()); };
+  EXPECT_EQ(*bytes_of(ask(id, "picture")), jpeg);
+  const auto thumbnail = bytes_of(ask(id, "thumbnail"));
+  ASSERT_TRUE(thumbnail.ok()) << thumbnail.error().text;
+  EXPECT_LE(thumbnail->size(), findings::Photo::kMaxThumbnail);
+  EXPECT_TRUE(findings::decode_photo(*thumbnail).ok());
+  EXPECT_EQ(ask("00000000000000ff", "picture")["outcome"]["json"]["reason"], "cannot_read");
+  for (const json& bad : {json(5), json(), json(""), json("ff"), json(id + "0")})
+    EXPECT_TRUE(ask(bad, "picture").contains("wrong")) << bad;
+  for (const json& bad : {json(5), json(), json("whole")}) EXPECT_TRUE(ask(id, bad).contains("wrong")) << bad;
+}
+
 TEST_F(ServerTest, FilesAreRelativeToTheFolderOfTheFrontEnd) {
   Talk talk(path());
   const auto error = [&](const std::string& file) {
@@ -193,12 +223,14 @@ TEST_F(ServerTest, AFolderThatDoesNotFitIsRefused) {
 }
 
 TEST_F(ServerTest, SpoiledRequestsAreAnsweredAndDisturbNoOther) {
-  const std::vector<std::string> good{line_of({{"front_end", "shell"}, {"folder", "/home/op"}}),
-                                      line_of({{"id", 1}, {"do", "take r1 r2"}}),
-                                      line_of({{"id", 2}, {"teleop", "r1"}}),
-                                      line_of({{"id", 2}, {"stick", {0.5, 0.0, -1.0}}}),
-                                      line_of({{"cancel", 2}}),
-                                      line_of({{"map", {{"run", 0}, {"revision", 0}, {"look", {1, 2, 3}}}}})};
+  const std::vector<std::string> good{
+      line_of({{"front_end", "shell"}, {"folder", "/home/op"}}),
+      line_of({{"id", 1}, {"do", "take r1 r2"}}),
+      line_of({{"id", 2}, {"teleop", "r1"}}),
+      line_of({{"id", 2}, {"stick", {0.5, 0.0, -1.0}}}),
+      line_of({{"id", 3}, {"photo", "00000000000000ff"}, {"part", "picture"}}),
+      line_of({{"cancel", 2}}),
+      line_of({{"map", {{"run", 0}, {"revision", 0}, {"look", {1, 2, 3}}}}})};
   Random random(5);
   const auto drawn = [&](std::size_t count) { return static_cast<std::size_t>(random.below(count)); };
   Talk spoiler(path()), other(path());

@@ -35,6 +35,19 @@ TEST(Photo, ALargeOneIsScaledAndRecompressed) {
   }
 }
 
+TEST(Photo, IsDecodedAndALargeOneScaled) {
+  const auto small = decode_photo(draw({.width = 640, .height = 480}));
+  ASSERT_TRUE(small.ok()) << small.error().text;
+  EXPECT_EQ(small->width, 640U);
+  EXPECT_EQ(small->height, 480U);
+  EXPECT_EQ(small->rgb.size(), 640U * 480U * 3U);
+  const auto large = decode_photo(draw({.width = 3000, .height = 2000}));
+  ASSERT_TRUE(large.ok()) << large.error().text;
+  EXPECT_GE(large->width, Photo::kSide);
+  EXPECT_LT(large->width, 2000U);
+  EXPECT_FALSE(decode_photo(store::Bytes(100, 0xff)).ok());
+}
+
 TEST(Photo, NoiseFitsToo) {
   const auto photo = make_photo(draw({.width = 1600, .height = 1200, .noise = true}));
   ASSERT_TRUE(photo.ok()) << photo.error().text;

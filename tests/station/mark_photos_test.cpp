@@ -59,6 +59,7 @@ TEST_F(MarkPhotosTest, AreStoredListedAndWrittenAlsoAfterARestart) {
     EXPECT_EQ(listed.json["findings"][0]["photo"]["here"], "whole");
     EXPECT_EQ(listed.json["findings"][0]["photo"]["percent"], 100);
     EXPECT_EQ(listed.json["findings"][0]["photo"]["bytes"], jpeg.size());
+    EXPECT_EQ(listed.json["findings"][0]["photo"]["id"], findings::id_text(findings::photo_hash(jpeg)));
     EXPECT_FALSE(listed.json["findings"][1].contains("photo"));
     const std::string out = folder_ + "/out.jpg";
     EXPECT_EQ(execute("finding photo 1 " + out).text, "the photo is in " + out + "\n");

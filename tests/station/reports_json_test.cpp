@@ -87,6 +87,8 @@ class ReportDraw {
               maybe(),
               static_cast<Verdict>(below(3)),
               text(),
+              flag(),
+              photo(),
               flag()};
     report.at_robots.resize(below(3));
     for (FoundAtRobot& robot : report.at_robots) robot = {text(), count(), count(), count()};
@@ -116,6 +118,12 @@ class ReportDraw {
   }
 
  private:
+  std::optional<FoundPhoto> photo() {
+    if (flag()) return std::nullopt;
+    return FoundPhoto{static_cast<PhotoHere>(below(3)), static_cast<std::uint8_t>(below(101)), count(),
+                      text()};
+  }
+
   Random random_;
 };
 
