@@ -58,7 +58,11 @@ std::string mismatch(const AnswerExpectation& e, const Evidence& evidence) {
 std::string mismatch(const FindingsExpectation& e, const Evidence& evidence) {
   const auto it = evidence.findings.find(e.by);
   if (it == evidence.findings.end()) return "the station does not run";
-  return it->second == e.findings ? std::string() : "it has " + std::to_string(it->second);
+  if (it->second != e.findings) return "it has " + std::to_string(it->second);
+  if (!e.photos) return {};
+  const auto photos = evidence.photos.find(e.by);
+  const std::size_t count = photos == evidence.photos.end() ? 0 : photos->second;
+  return count == *e.photos ? std::string() : "it has " + std::to_string(count) + " whole photos";
 }
 
 std::string percent(const char* what, double share) {

@@ -27,6 +27,7 @@ struct Evidence {
   std::function<std::optional<MapJudgement>(const std::string& by)> map{};
   std::map<std::string, Reason> last_answer{};    ///< By operator.
   std::map<std::string, std::size_t> findings{};  ///< By operator whose station runs.
+  std::map<std::string, std::size_t> photos{};    ///< Whole ones, by operator whose station runs.
 };
 
 /// Judges a scenario's expectations as time goes on.

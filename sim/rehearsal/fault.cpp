@@ -81,8 +81,10 @@ std::pair<const char*, std::string> parts(const Fault& fault) {
             return Fields{"stuck", pair(f.by, f.robot) + window(f.duration)};
           },
           [](const Find& f) {
-            return Fields{"finds",
-                          fmt::format("\"{}\", robot: {}, importance: {}", f.kind, f.robot, f.importance)};
+            const std::string photo = f.photo > 0 ? fmt::format(", photo: {}", f.photo) : "";
+            return Fields{
+                "finds",
+                fmt::format("\"{}\", robot: {}, importance: {}", f.kind, f.robot, f.importance) + photo};
           },
           [](const Steer& f) {
             return Fields{"steers", f.robot +

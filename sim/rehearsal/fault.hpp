@@ -86,6 +86,7 @@ struct Find {
   std::string robot{};
   std::string kind{};  ///< 1 to 32 bytes
   int importance{1};   ///< 0 to 255
+  int photo{};  ///< Size of its photo, kB, [0, 256]; 0: it has none. With a photo a program reports it.
 };
 
 /// No fault either: a program on the robot steers, in mode `external`, 20 times a second.

@@ -117,6 +117,7 @@ Find read_find(const Node& node, const Scenario& scenario) {
                              "expected 1 to 32 printable characters for finds, without quotes");
   out.robot = read_robot(node, "robot", scenario);
   out.importance = static_cast<int>(node.integer("importance", 0, 255, 1));
+  out.photo = static_cast<int>(node.integer("photo", 0, 256, 0));
   return out;
 }
 

@@ -163,6 +163,7 @@ void FaultPlayer::play(const OdometryReset& fault) {
 void FaultPlayer::play(const Twin& fault) { note(robots_.at(fault.robot)->add_twin(fault.duration)); }
 
 void FaultPlayer::play(const Find& find) {
+  if (find.photo > 0) return note(robots_.at(find.robot)->report(find.kind, find.photo));
   const Eigen::Vector3d place =
       stage_.simulation.truth(stage_.simulation.find(find.robot).value()).pose.position;
   findings::Finding finding{};

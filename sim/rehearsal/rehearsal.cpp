@@ -252,6 +252,7 @@ class Run {
     for (const auto& [id, station] : stations_) {
       if (const auto answer = station->last_answer()) out.last_answer[id] = *answer;
       if (const auto findings = station->findings()) out.findings[id] = *findings;
+      if (const station::Station* running = station->station()) out.photos[id] = running->photos();
     }
     return out;
   }

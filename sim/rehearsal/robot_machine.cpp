@@ -5,7 +5,9 @@
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
 #include "robot_agent/motion/velocity_writer.hpp"
+#include "sim/rehearsal/drawn_jpeg.hpp"
 #include "sim/rehearsal/rehearsal.hpp"
+#include "visualization_msgs/msg/Marker.h"
 
 namespace adit::sim {
 
@@ -22,6 +24,7 @@ namespace {
 constexpr Duration kParentNotices{20ms};
 constexpr Duration kZeroPeriod{50ms};
 constexpr Duration kRestartAfter{500ms};
+constexpr Duration kReporterStarts{1s};
 constexpr std::uint32_t kFirstRobotDomain = 101;
 constexpr std::uint32_t kFirstTwinDomain = 10001;
 
@@ -44,13 +47,15 @@ struct RobotMachine::Agent {
   std::unique_ptr<RehearsedAgent> program{};
 };
 
-/// A program on the robot that steers by itself.
+/// A program on the robot that steers by itself, or reports.
 struct RobotMachine::Program {
   std::unique_ptr<Runtime> runtime{};
   std::shared_ptr<Executor> strand{};
   std::unique_ptr<wire::Participant> wire{};
   wire::Writer<geometry_msgs::msg::Twist> velocity{};
+  wire::Writer<visualization_msgs::msg::Marker> reports{};
   Timer timer{};
+  std::vector<Timer> later{};
 };
 
 RobotMachine::RobotMachine(Stage& stage, std::size_t index, const RobotSpec& spec, Random random)
@@ -135,6 +140,36 @@ Result<void> RobotMachine::inject(const std::string& component, ComponentFault f
 Result<void> RobotMachine::find(findings::Finding finding) {
   if (!agent_) return {};
   return agent_->program->find(std::move(finding));
+}
+
+Result<void> RobotMachine::report(const std::string& kind, int kilobytes) {
+  if (!reporter_) {
+    auto program = std::make_unique<Program>();
+    const std::string machine = spec_.id + "/reporter";
+    program->runtime = stage_.scheduler.machine(machine, clock_offset_);
+    program->strand = program->runtime->strand("reporter");
+    program->wire = stage_.network.join(domain_, machine);
+    auto writer = wire::Writer<visualization_msgs::msg::Marker>::make(*program->wire, wire::topics::kReports);
+    if (!writer) return writer.error();
+    program->reports = std::move(*writer);
+    reporter_ = std::move(program);
+  }
+  visualization_msgs::msg::Marker marker;
+  marker.ns(kind);
+  marker.id(++reports_);
+  marker.header().frame_id("base_link");
+  marker.texture().format("jpeg");
+  marker.texture().data() = drawn_jpeg(static_cast<std::size_t>(kilobytes) * 1024,
+                                       random_.fork(static_cast<std::uint64_t>(reports_)).next());
+  // It takes the photo once the agent's reader is known.
+  reporter_->later.push_back(
+      reporter_->strand->after(kReporterStarts, [p = reporter_.get(), marker]() mutable {
+        const std::uint64_t now = to_stamp(p->strand->now());
+        marker.header().stamp().sec(static_cast<std::int32_t>(now / 1'000'000'000));
+        marker.header().stamp().nanosec(static_cast<std::uint32_t>(now % 1'000'000'000));
+        (void)p->reports.write(marker);  // A failed write is counted by the wire.
+      }));
+  return {};
 }
 
 Result<void> RobotMachine::steer(const Twist2& velocity, Duration duration) {

@@ -38,6 +38,8 @@ class RobotMachine {
   Result<void> inject(const std::string& component, ComponentFault fault);
   /// A component of the agent reports it; nothing happens while the agent is dead.
   Result<void> find(findings::Finding finding);
+  /// A program beside the agent reports a finding where the robot is, with a photo of that many kB.
+  Result<void> report(const std::string& kind, int kilobytes);
   /// A program beside the agent writes that velocity (body frame) for mode `external`, 20 times a second.
   Result<void> steer(const Twist2& velocity, Duration duration);
   /// A second agent with this robot's name, on a computer of its own without a driver.
@@ -72,6 +74,8 @@ class RobotMachine {
   std::unique_ptr<Parent> parent_{};
   std::unique_ptr<Agent> agent_{};
   std::unique_ptr<Program> program_{};
+  std::unique_ptr<Program> reporter_{};
+  int reports_{};
   std::unique_ptr<Agent> twin_{};
   Result<void> health_{};
 };

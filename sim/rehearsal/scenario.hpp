@@ -91,10 +91,11 @@ struct AnswerExpectation {
   std::string by{};
   Reason refused{Reason::none};
 };
-/// A station has so many findings, of all robots.
+/// A station has so many findings, of all robots, and so many whole photos of them.
 struct FindingsExpectation {
   std::string by{};
   std::size_t findings{};
+  std::optional<std::size_t> photos{};
 };
 /// The order of a convoy, as every member says.
 struct ConvoyExpectation {

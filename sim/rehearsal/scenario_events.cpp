@@ -166,8 +166,11 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
   } else if (node.has("repeat_at_most")) {
     out.what = RepeatExpectation{node.number("repeat_at_most", config::within(0.0, 1.0))};
   } else if (node.has("by_operator") && node.has("findings")) {
-    out.what = FindingsExpectation{read_station(node, "by_operator", scenario),
-                                   static_cast<std::size_t>(node.integer("findings", 0, 65536))};
+    FindingsExpectation desk{read_station(node, "by_operator", scenario),
+                             static_cast<std::size_t>(node.integer("findings", 0, 65536)),
+                             {}};
+    if (node.has("photos")) desk.photos = static_cast<std::size_t>(node.integer("photos", 0, 65536));
+    out.what = desk;
   } else if (node.has("map_at_least") || node.has("map_wrong_at_most")) {
     MapExpectation map{.by = read_station(node, "by_operator", scenario)};
     if (node.has("map_at_least")) map.share = node.number("map_at_least", config::within(0.0, 1.0));

@@ -70,6 +70,21 @@ TEST(Expectations, ReportsAStationThatIsDeadOrListsOthers) {
   EXPECT_EQ(d.finish().found, "it has 3");
 }
 
+TEST(Expectations, AStationHasSoManyWholePhotos) {
+  Case c({When::by, 10s, FindingsExpectation{"op1", 2, 1}, 1, ""});
+  c.evidence.findings["op1"] = 2;
+  c.expectations->judge(2s, c.evidence);
+  c.evidence.photos["op1"] = 1;
+  c.expectations->judge(3s, c.evidence);
+  EXPECT_TRUE(c.finish().ok);
+  Case d({When::at, 10s, FindingsExpectation{"op1", 2, 1}, 1, ""});
+  d.evidence.findings["op1"] = 2;
+  d.evidence.photos["op1"] = 2;
+  d.expectations->judge(10s, d.evidence);
+  EXPECT_FALSE(d.finish().ok);
+  EXPECT_EQ(d.finish().found, "it has 2 whole photos");
+}
+
 TEST(Expectations, ARobotGivesAReason) {
   Case c({When::by, 10s, ReasonExpectation{"r1", Reason::blocked}, 1, ""});
   bool said = false;

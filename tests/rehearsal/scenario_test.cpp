@@ -40,18 +40,19 @@ std::string with(const std::string& what, const std::string& instead) {
 }
 
 TEST(Scenario, ReadsFindingsAndSafeguardsOfRobots) {
-  std::string text = with("crash: r1", "finds: \"a rope\", robot: r2, importance: 7");
+  std::string text = with("crash: r1", "finds: \"a rope\", robot: r2, importance: 7, photo: 40");
   const std::string robot = "pose: [4, 0, 1.5]";
   text.replace(text.find(robot), robot.size(), robot + ", on_link_loss: return, link_loss_after: 4");
   const std::string answer = "by_operator: op2, refused: locked";
-  text.replace(text.find(answer), answer.size(), "by_operator: op2, findings: 3");
+  text.replace(text.find(answer), answer.size(), "by_operator: op2, findings: 3, photos: 1");
   const auto s = parse_scenario(text, "b.yaml");
   ASSERT_TRUE(s.ok()) << s.error().text;
   const auto& find = std::get<Find>(s->faults[0].what);
   EXPECT_EQ(find.kind, "a rope");
   EXPECT_EQ(find.robot, "r2");
   EXPECT_EQ(find.importance, 7);
-  EXPECT_EQ(to_yaml(s->faults[0]), "{at: 20.000, finds: \"a rope\", robot: r2, importance: 7}");
+  EXPECT_EQ(find.photo, 40);
+  EXPECT_EQ(to_yaml(s->faults[0]), "{at: 20.000, finds: \"a rope\", robot: r2, importance: 7, photo: 40}");
   EXPECT_EQ(s->robots[0].settings.safeguards.link_loss.action, agent::OnLoss::go_on);
   EXPECT_EQ(s->robots[0].settings.safeguards.link_loss.after, Duration(10s));
   EXPECT_EQ(s->robots[1].settings.safeguards.link_loss.action, agent::OnLoss::back);
@@ -59,6 +60,7 @@ TEST(Scenario, ReadsFindingsAndSafeguardsOfRobots) {
   const auto& expected = std::get<FindingsExpectation>(s->expectations[1].what);
   EXPECT_EQ(expected.by, "op2");
   EXPECT_EQ(expected.findings, 3u);
+  EXPECT_EQ(expected.photos, std::optional<std::size_t>(1));
 }
 
 TEST(Scenario, ReadsEveryKey) {
@@ -357,6 +359,12 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"find_of_nothing", "crash: r1", "finds: '', robot: r1", 15, "1 to 32"},
         Bad{"find_of_far_too_much", "crash: r1", "finds: 123456789012345678901234567890123, robot: r1", 15,
             "1 to 32"},
+        Bad{"find_with_a_huge_photo", "crash: r1", "finds: gas, robot: r1, photo: 257", 15, "256"},
+        Bad{"find_with_a_negative_photo", "crash: r1", "finds: gas, robot: r1, photo: -1", 15, "256"},
+        Bad{"photos_negative", "by_operator: op2, refused: locked",
+            "by_operator: op2, findings: 1, photos: -1", 21, "65536"},
+        Bad{"photos_of_no_number", "by_operator: op2, refused: locked",
+            "by_operator: op2, findings: 1, photos: all", 21, "photos"},
         Bad{"find_beyond_importance", "crash: r1", "finds: gas, robot: r1, importance: 256", 15, "255"},
         Bad{"on_link_loss", "pose: [1, 0, 0]", "pose: [1, 0, 0], on_link_loss: cry", 6, "continue"},
         Bad{"link_loss_after", "pose: [1, 0, 0]", "pose: [1, 0, 0], link_loss_after: 0", 6, "3600"},
