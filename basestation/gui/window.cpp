@@ -5,6 +5,7 @@
 #include <QQmlComponent>
 
 #include "basestation/gui/bridge/control.hpp"
+#include "basestation/gui/bridge/photo_provider.hpp"
 
 Q_IMPORT_QML_PLUGIN(AditPlugin)
 
@@ -12,6 +13,7 @@ namespace adit::gui {
 
 OperatorWindow::OperatorWindow(Control& control) {
   engine_.addImportPath("qrc:/qt/qml");
+  engine_.addImageProvider(PhotoProvider::kName, new PhotoProvider(control.tabs()->photos()->loader()));
   QQmlComponent component(&engine_, QUrl("qrc:/qt/qml/Adit/Main.qml"));
   QObject* root = component.createWithInitialProperties({{"control", QVariant::fromValue(&control)}});
   for (const QQmlError& error : component.errors()) qWarning("%s", qPrintable(error.toString()));

@@ -8,7 +8,7 @@ namespace adit::gui {
 
 class Control;
 
-/// The operator's window: the files of qml/ with a control.
+/// The operator's window: the files of qml/ with a control, which outlives it.
 class OperatorWindow {
  public:
   explicit OperatorWindow(Control& control);

@@ -131,6 +131,14 @@ TEST_F(Accessibility, EveryTargetHasANameAndARoleAndIsLargeEnoughAndNoTextIsCutO
     if (std::string(tab) == "stairs") answer(answer_of(some_stairs()));
     walk(tab);
   }
+  station::FoundReport found = some_findings();
+  found.findings[0].photo =
+      station::FoundPhoto{station::PhotoHere::thumbnail, 40, 90'000, "00000000000000a2"};
+  TabsTest::open("findings");
+  answer(answer_of(found));
+  control.tabs()->photos()->show(2);
+  walk("photo");
+  control.tabs()->photos()->close();
   control.tabs()->close();
   control.select("r1", false);
   control.drive()->begin("r1");

@@ -85,6 +85,46 @@ TEST(Tables, OnlyMarksOfThisStationCanBeRemoved) {
   for (std::size_t i = 1; i < rows.size(); ++i) EXPECT_FALSE(rows[i].removable) << i;
 }
 
+TEST(Tables, APhotoIsNamedByThePartThatIsHere) {
+  using station::PhotoHere;
+  const auto words = [](PhotoHere here, std::uint8_t percent) {
+    station::FoundReport report;
+    report.findings = {{.number = 1, .photo = station::FoundPhoto{here, percent, 1000, "00ff"}}};
+    return found_rows(report, "op1")[0].photo_state;
+  };
+  EXPECT_EQ(words(PhotoHere::none, 0), "none yet");
+  EXPECT_EQ(words(PhotoHere::thumbnail, 0), "thumbnail");
+  EXPECT_EQ(words(PhotoHere::thumbnail, 40), "40 %");
+  EXPECT_EQ(words(PhotoHere::whole, 100), "whole");
+  station::FoundReport without;
+  without.findings = {{.number = 1}};
+  EXPECT_EQ(found_rows(without, "op1")[0].photo_state, "");
+}
+
+TEST(Tables, ACaptionSaysWhatWhoWhereWhenAndWhichPart) {
+  station::FoundItem item{.number = 2,
+                          .robot = "r3",
+                          .id = "00000000000000a2",
+                          .kind = "person",
+                          .position = {12, 4, 0.2},
+                          .text = "sits at the wall",
+                          .age = 75.0,
+                          .photo = station::FoundPhoto{station::PhotoHere::thumbnail, 40, 1000, "00ff"}};
+  const PhotoCaption caption = photo_caption(item);
+  EXPECT_EQ(caption.title, "2  person");
+  EXPECT_EQ(caption.text, "sits at the wall");
+  EXPECT_EQ(caption.line, "found by r3   at 12.0 4.0 0.2   75 s ago   id 00000000000000a2");
+  EXPECT_EQ(caption.state, "thumbnail, enlarged; 40 % of the photo are here");
+  item.photo->here = station::PhotoHere::whole;
+  item.age.reset();
+  item.mark = true;
+  EXPECT_EQ(photo_caption(item).state, "the whole photo");
+  EXPECT_EQ(photo_caption(item).line,
+            "marked by r3   at 12.0 4.0 0.2   at an unknown time   id 00000000000000a2");
+  item.photo->here = station::PhotoHere::none;
+  EXPECT_EQ(photo_caption(item).state, "its thumbnail is not here yet; 40 % of the photo are here");
+}
+
 TEST(Tables, FindingsThatAreWithdrawnAreGrey) {
   station::FoundReport report;
   report.findings = {{.number = 1, .withdrawn = true},

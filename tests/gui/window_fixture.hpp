@@ -16,6 +16,9 @@ class FakeSink : public CommandSink {
     queries.push_back(line);
     asked.emplace_back(line, std::move(done));
   }
+  void photo(const std::string& id, findings::PhotoPart part, Done done) override {
+    photos.push_back({id, part, std::move(done)});
+  }
   void stop(const std::vector<std::string>& robots, Done done) override {
     std::string line = "STOP";
     for (const std::string& robot : robots) line += " " + robot;
@@ -28,6 +31,12 @@ class FakeSink : public CommandSink {
   std::vector<Done> pending{};
   std::vector<std::string> queries{};
   std::vector<std::pair<std::string, Done>> asked{};  ///< Queries without an answer.
+  struct AskedPhoto {
+    std::string id{};
+    findings::PhotoPart part{};
+    Done done{};
+  };
+  std::vector<AskedPhoto> photos{};  ///< Photos that were asked for.
   int starts{};
   std::optional<station::LookedAt> looked{};
 };

@@ -7,6 +7,7 @@
 
 #include "basestation/model/map_tiles.hpp"
 #include "basestation/model/outcome.hpp"
+#include "core/findings/photo_file.hpp"
 
 namespace adit::gui {
 
@@ -20,6 +21,9 @@ class CommandSink {
   virtual void execute(const std::string& line, Done done) = 0;
   /// Asks the station by a command line that changes nothing.
   virtual void query(const std::string& line, Done done) = 0;
+  /// Asks the station for the bytes of a part of a photo; station::photo_of() reads the outcome. `id`:
+  /// FoundPhoto::id.
+  virtual void photo(const std::string& id, findings::PhotoPart part, Done done) = 0;
   /// Software stop of these robots, or of all if there is none.
   virtual void stop(const std::vector<std::string>& robots, Done done) = 0;
   /// The operator looks at this place of the map, or at none in particular.

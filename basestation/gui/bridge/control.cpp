@@ -51,6 +51,10 @@ Control::Control(CommandSink& sink, QObject* parent)
   connect(&tabs_, &TabState::ordered, this, &Control::order_of_tab);
   connect(&tabs_, &TabState::place_wanted, this, &Control::look_at);
   connect(&tabs_, &TabState::remark, this, &Control::add_remark);
+  // Who drives must see the map.
+  connect(&drive_, &DriveControl::changed, &tabs_, [this] {
+    if (drive_.driving()) tabs_.photos()->close();
+  });
   connect(&tabs_, &TabState::findings_changed, this, &Control::stairs_shown);
   connect(this, &Control::shown, this, &Control::stairs_shown);
   connect(&tabs_, &TabState::said, this,

@@ -347,6 +347,7 @@ void Control::confirm() {
 
 void Control::take_back() {
   emit orders_dropped();
+  if (tabs_.photos()->close()) return;
   if (area_.active()) {
     area_.set_active(false);
   } else if (mark_.active() || mark_.ready()) {

@@ -74,6 +74,17 @@ void show_budget(const station::SenderReport* sender, const station::AgentTraffi
       row.dropped += (row.dropped.empty() ? "never sent: " : ", ") + std::to_string(count) + " " + priority;
 }
 
+std::string place_words(const station::FoundItem& item) {
+  const auto& [x, y, z] = item.position;
+  return station::fixed(x, 1) + " " + station::fixed(y, 1) + " " + station::fixed(z, 1);
+}
+
+std::string photo_words(const station::FoundPhoto& photo) {
+  if (photo.here == station::PhotoHere::whole) return "whole";
+  if (photo.percent > 0) return std::to_string(photo.percent) + " %";
+  return photo.here == station::PhotoHere::thumbnail ? "thumbnail" : "none yet";
+}
+
 bool full(const station::SenderReport* sender) { return sender && sender->queue > kFullQueue; }
 
 }  // namespace
@@ -176,9 +187,9 @@ std::vector<FoundRow> found_rows(const station::FoundReport& report, const std::
                  .robot = item.robot + (item.mark ? " (mark)" : ""),
                  .text = item.text,
                  .note = item.note};
-    row.place = station::fixed(item.position[0], 1) + " " + station::fixed(item.position[1], 1) + " " +
-                station::fixed(item.position[2], 1);
+    row.place = place_words(item);
     row.age = item.age ? age_text(*item.age) : "-";
+    if (item.photo) row.photo_state = photo_words(*item.photo);
     const bool open = item.verdict == station::Verdict::open;
     row.verdict = open ? "new" : to_string(item.verdict);
     row.withdrawn = item.withdrawn;
@@ -189,6 +200,25 @@ std::vector<FoundRow> found_rows(const station::FoundReport& report, const std::
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+PhotoCaption photo_caption(const station::FoundItem& item) {
+  const station::FoundPhoto photo = item.photo.value_or(station::FoundPhoto{});
+  const std::string share = std::to_string(photo.percent) + " % of the photo are here";
+  PhotoCaption out{.title = std::to_string(item.number) + "  " + item.kind, .text = item.text};
+  out.line = (item.mark ? "marked by " : "found by ") + item.robot + "   at " + place_words(item) + "   " +
+             (item.age ? age_text(*item.age) + " ago" : "at an unknown time") + "   id " + item.id;
+  switch (photo.here) {
+    case station::PhotoHere::none:
+      out.state = "its thumbnail is not here yet; " + share;
+      break;
+    case station::PhotoHere::thumbnail:
+      out.state = "thumbnail, enlarged; " + share;
+      break;
+    case station::PhotoHere::whole:
+      out.state = "the whole photo";
+  }
+  return out;
 }
 
 std::string found_missing(const station::FoundReport& report) {

@@ -70,11 +70,21 @@ struct FoundRow {
   std::string shape{};
   Token token{Token::none};
   bool withdrawn{};
-  bool removable{};  ///< A mark of this station.
+  bool removable{};           ///< A mark of this station.
+  std::string photo_state{};  ///< How much of its photo is here, in words; empty: it has none.
   bool operator==(const FoundRow&) const = default;
 };
 /// `own`: the name of this station.
 std::vector<FoundRow> found_rows(const station::FoundReport& report, const std::string& own);
+/// A finding below its photo, which is open over the window.
+struct PhotoCaption {
+  std::string title{};  ///< "2  person".
+  std::string text{};   ///< Of the finding.
+  std::string line{};   ///< Robot, place, age and id.
+  std::string state{};  ///< Which part of the photo it is.
+};
+/// `item` has a photo.
+PhotoCaption photo_caption(const station::FoundItem& item);
 /// What robots still store: "r4 still stores 3 that are not here".
 std::string found_missing(const station::FoundReport& report);
 /// A staircase as a row of its tab.

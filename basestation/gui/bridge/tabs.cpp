@@ -39,12 +39,13 @@ TabState::TabState(CommandSink& sink, RowModel& log, QObject* parent)
       speakers_({"name"}, this),
       hearing_({"cell", "name", "label", "shape", "token"}, this),
       findings_({"number", "importance", "kind", "robot", "place", "age", "line", "note", "verdict", "shape",
-                 "token", "withdrawn", "removable"},
+                 "token", "withdrawn", "removable", "photo", "photoState"},
                 this),
       stairs_({"number", "direction", "turn", "steps", "floors", "step", "breadth", "robots", "verdict",
                "climbers", "others", "token"},
               this),
-      world_(std::make_shared<station::World>()) {
+      world_(std::make_shared<station::World>()),
+      photos_(sink, found_, this) {
   timer_.setInterval(kPeriodMs);
   connect(&timer_, &QTimer::timeout, this, &TabState::ask);
   found_later_.setSingleShot(true);
@@ -60,6 +61,7 @@ void TabState::show(const std::shared_ptr<const station::World>& world,
   log_.set_selection(selection);
   if (!world_->station.empty()) {
     const bool is_back = std::exchange(silent_, silent) && !silent;
+    if (is_back) photos_.try_again();
     if (is_back || world_->findings.changes != found_changes_) find_later();
     found_changes_ = world_->findings.changes;
   }
@@ -93,6 +95,7 @@ void TabState::toggle(const QString& tab) {
     extra_ = tab == extra_ ? QString() : tab;
   }
   noting_ = 0;
+  photos_.close();
   problem_.clear();
   time_questions();
   show_tabs();

@@ -10,6 +10,7 @@
 
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/log_view.hpp"
+#include "basestation/gui/bridge/photo_view.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
 #include "basestation/gui/bridge/settings.hpp"
 #include "basestation/gui/bridge/tables.hpp"
@@ -40,6 +41,7 @@ class TabState : public QObject {
   Q_PROPERTY(QAbstractItemModel* hearing READ hearing CONSTANT)
   Q_PROPERTY(int speakerCount READ speaker_count NOTIFY shown)
   Q_PROPERTY(QAbstractItemModel* findings READ findings CONSTANT)
+  Q_PROPERTY(adit::gui::PhotoView* photos READ photos CONSTANT)
   Q_PROPERTY(QAbstractItemModel* stairs READ stairs CONSTANT)
   Q_PROPERTY(QString unreadable READ unreadable NOTIFY shown)
   Q_PROPERTY(QString missing READ missing NOTIFY shown)
@@ -96,6 +98,7 @@ class TabState : public QObject {
   QAbstractItemModel* hearing() { return &hearing_; }
   int speaker_count() const { return speakers_.rowCount(); }
   QAbstractItemModel* findings() { return &findings_; }
+  PhotoView* photos() { return &photos_; }
   QAbstractItemModel* stairs() { return &stairs_; }
   const QString& unreadable() const { return unreadable_; }
   const QString& missing() const { return missing_; }
@@ -155,6 +158,7 @@ class TabState : public QObject {
   station::NetworkReport net_{};
   bool watching_network_{false};
   station::FoundReport found_{};
+  PhotoView photos_;                                ///< Of `found_`.
   bool stairs_asked_{false}, stairs_again_{false};  ///< As of findings.
   station::StairsReport stairs_report_{};
   QString missing_{}, unreadable_{}, problem_{};

@@ -73,11 +73,14 @@ void TabState::show_network() {
 
 void TabState::show_findings() {
   std::vector<QVariantList> rows;
-  for (const FoundRow& row : found_rows(found_, world_->station))
+  for (const FoundRow& row : found_rows(found_, world_->station)) {
+    const station::FoundItem& item = found_.findings[rows.size()];
     rows.push_back({row.number, text_of(row.importance), text_of(row.kind), text_of(row.robot),
                     text_of(row.place), text_of(row.age), text_of(row.text), text_of(row.note),
                     text_of(row.verdict), text_of(row.shape), word_of(row.token), row.withdrawn,
-                    row.removable});
+                    row.removable, photos_.thumbnail(item), text_of(row.photo_state)});
+  }
+  photos_.refresh();
   findings_.show(std::move(rows));
   missing_ = text_of(found_missing(found_));
   show_tabs();

@@ -18,6 +18,9 @@ Rectangle {
     required property string token
     required property bool withdrawn
     required property bool removable
+    required property string photo
+    required property string photoState
+    readonly property double textX: (photo === "" ? 7 : 25) * Theme.mm
     height: 14 * Theme.mm
     color: Theme.raised
     opacity: verdict === "rejected" || withdrawn ? 0.6 : 1
@@ -44,22 +47,48 @@ Rectangle {
         colour: row.token === "ok" ? Theme.ok : row.token === "dim" ? Theme.dim : Theme.text
         outline: Theme.ink
     }
-    PlainLabel {
+    Rectangle {
+        visible: row.photo !== ""
         x: 7 * Theme.mm
         y: 1 * Theme.mm
-        width: buttons.x - 9 * Theme.mm
+        width: 16 * Theme.mm
+        height: 12 * Theme.mm
+        color: Theme.ground
+        Image {
+            objectName: "thumbnail_" + row.number
+            anchors.fill: parent
+            asynchronous: true
+            cache: false
+            fillMode: Image.PreserveAspectFit
+            source: row.photo
+        }
+        PressArea {
+            objectName: "photo_" + row.number
+            anchors.fill: parent
+            meaning: "photo" + row.number
+            onTapped: row.state_.photos.show(row.number)
+            Accessible.role: Accessible.Button
+            Accessible.name: "photo of finding " + row.number
+            Accessible.onPressAction: row.state_.photos.show(row.number)
+        }
+    }
+    PlainLabel {
+        x: row.textX
+        y: 1 * Theme.mm
+        width: buttons.x - x - 2 * Theme.mm
         height: 6 * Theme.mm
         font.bold: !row.withdrawn
         color: row.withdrawn ? Theme.dim : Theme.text
         text: row.number + "  " + row.kind + "   " + row.robot + "   " + (row.withdrawn ? row.verdict === "new" ? "withdrawn" : row.verdict + ", withdrawn" : row.verdict) + "   importance " + row.importance + "   at " + row.place + "   " + row.age
     }
     PlainLabel {
-        x: 7 * Theme.mm
+        objectName: "line_" + row.number
+        x: row.textX
         y: 7 * Theme.mm
-        width: buttons.x - 9 * Theme.mm
+        width: buttons.x - x - 2 * Theme.mm
         height: 6 * Theme.mm
         color: Theme.dim
-        text: row.line + (row.note === "" ? "" : "  —  note: " + row.note)
+        text: (row.photoState === "" ? "" : "photo: " + row.photoState + "   ") + row.line + (row.note === "" ? "" : "  —  note: " + row.note)
     }
     Row {
         id: buttons

@@ -87,6 +87,13 @@ Window {
             anchors.right: parent.right
             anchors.bottom: actions.top
         }
+        PhotoPane {
+            photos: window.control.tabs.photos
+            visible: window.control.tabs.photos.open
+            width: parent.width
+            anchors.top: attention.bottom
+            anchors.bottom: actions.top
+        }
         ActionBar {
             id: actions
             control: window.control
