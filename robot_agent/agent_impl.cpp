@@ -231,7 +231,11 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   const bool routes_it = params.platform.router != "none";
   const bool maps_it = params.perception == PerceptionLevel::slam;
   e.stairs = params.perception != PerceptionLevel::off
-                 ? std::make_unique<StairsReporter>(params.name, *e.findings)
+                 ? std::make_unique<StairsReporter>(
+                       params.name, *e.findings,
+                       [&e](const findings::Anchor& anchor) -> std::optional<Pose3> {
+                         return e.map ? e.map->submap_pose(anchor.start, anchor.submap) : std::nullopt;
+                       })
                  : nullptr;
   for (Unit* unit : {&planner, &router, &sensors, &map, &stairs})
     if ((unit != &router || routes_it) && (unit != &map || maps_it) && (unit != &stairs || e.stairs))

@@ -35,16 +35,6 @@ const FindingBook::Judgement& judgement(const FindingBook& book, const findings:
   return entry ? *entry : none;
 }
 
-/// The staircase of a finding where it is in the map now. Errors: as of stairs_of().
-Result<Staircase> stairs_now(const findings::Finding& finding, const ChunkStore& chunks) {
-  auto stairs = findings::stairs_of(finding);
-  if (!stairs) return stairs;
-  const Placed now = placed(finding, chunks);
-  stairs->foot = {now.position[0], now.position[1], now.position[2]};
-  stairs->heading = wrap_angle(stairs->heading + now.turn);
-  return stairs;
-}
-
 StairsItem item_of(const findings::MergedStairs& merged, const FindingBook& book, const Fleet& fleet) {
   StairsItem item{.stairs = merged.stairs};
   std::set<std::string> robots;
@@ -76,7 +66,7 @@ StairsReport stairs_report(const FindingDesk& desk, const FindingBook& book, con
   std::vector<findings::SeenStairs> seen;
   for (const auto& [key, finding] : desk.all()) {
     if (finding.kind != findings::kStairs || finding.withdrawn) continue;
-    if (const auto stairs = stairs_now(finding, chunks))
+    if (const auto stairs = findings::stairs_of(finding, placed(finding, chunks)))
       seen.push_back({key, *stairs});
     else
       ++report.unreadable;

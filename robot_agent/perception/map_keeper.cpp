@@ -120,6 +120,15 @@ std::optional<PlaceInSubmap> MapKeeper::place_in_submap(const Eigen::Vector3d& p
                        pose->T_map_submap.yaw()};
 }
 
+std::optional<Pose3> MapKeeper::submap_pose(std::uint64_t start, std::uint32_t index) const {
+  const auto found = std::ranges::find_if(submaps_, [&](const Submap& submap) {
+    return submap.place.start == start && submap.place.index == index;
+  });
+  if (found == submaps_.end()) return std::nullopt;
+  const auto pose = poses_.pose(static_cast<std::uint32_t>(found - submaps_.begin()));
+  return pose ? std::optional(pose->T_map_submap) : std::nullopt;
+}
+
 void MapKeeper::look_ahead(std::span<const Eigen::Vector3d> route) {
   std::vector<Eigen::Vector3d> points;
   for (std::size_t i = 0; i < route.size() && points.size() < kRoutePoints; ++i) {

@@ -65,6 +65,9 @@ class MapKeeper {
   /// A place (map frame, m) in the newest submap; nothing: there is none yet.
   std::optional<PlaceInSubmap> place_in_submap(const Eigen::Vector3d& place) const;
 
+  /// Pose in the map of the submap of that key, as it is now; nothing: unknown.
+  std::optional<Pose3> submap_pose(std::uint64_t start, std::uint32_t index) const;
+
   /// Whether a station lacks so much that what is ahead of the robot should go first.
   bool is_behind() const { return blocks_.is_behind(); }
   /// Sends what is around the robot and its route (map frame, m; the robot first) before all else.

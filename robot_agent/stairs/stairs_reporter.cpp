@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/findings/merge_stairs.hpp"
+#include "core/findings/placed.hpp"
 #include "core/findings/stairs_data.hpp"
 #include "robot_agent/stairs/stairs_tracker.hpp"
 
@@ -30,10 +31,16 @@ std::string stairs_text(const Staircase& stairs) {
   return text.data();
 }
 
+Result<Staircase> StairsReporter::present(const findings::Finding& finding) const {
+  const bool anchored = finding.anchor && find_submap_;
+  return findings::stairs_of(
+      finding, findings::placed(finding, anchored ? find_submap_(*finding.anchor) : std::nullopt));
+}
+
 std::optional<findings::Key> StairsReporter::known(const Staircase& stairs) const {
   for (const auto& [key, finding] : findings_.finding_store().all()) {
     if (key.robot != robot_ || finding.kind != findings::kStairs) continue;
-    const auto stored = findings::stairs_of(finding);
+    const auto stored = present(finding);
     if (stored && findings::is_same_flight(*stored, stairs)) return key;
   }
   return std::nullopt;
@@ -51,7 +58,7 @@ std::vector<Staircase> StairsReporter::all() const {
   std::vector<Staircase> out;
   for (const auto& [key, finding] : findings_.finding_store().all()) {
     if (key.robot != robot_ || finding.kind != findings::kStairs || finding.withdrawn) continue;
-    if (const auto stored = findings::stairs_of(finding)) out.push_back(*stored);
+    if (const auto stored = present(finding)) out.push_back(*stored);
   }
   return out;
 }
@@ -74,7 +81,7 @@ Result<void> StairsReporter::take(const StairsTracker::Tracked& tracked_stairs, 
     }
   }
   const findings::Key key = named->second;
-  const auto stored = findings::stairs_of(all.at(key));
+  const auto stored = present(all.at(key));
   Staircase better = stairs;
   if (stored && stored->steps > stairs.steps) {
     // After a restart, fewer steps are in view than were seen before.

@@ -218,6 +218,10 @@ TEST_F(MapKeeperTest, SendsBlocksAndPosesToAStationAndPosesAgainAfterACorrection
   ASSERT_TRUE(place);
   EXPECT_NEAR((poses.at(place->index) * place->offset - Eigen::Vector3d(9.0, 1.0, 1.5)).norm(), 0.0, 0.02);
   EXPECT_NEAR(place->yaw, 0.2, 0.001);
+  const auto pose = keeper.submap_pose(place->start, place->index);
+  ASSERT_TRUE(pose);
+  EXPECT_NEAR(pose->position.x(), 7.0, 0.01);
+  EXPECT_FALSE(keeper.submap_pose(place->start, place->index + 1));
 }
 
 /// How many blocks of the first piece of blocks lie near a point of the map, for a station that lacks all.

@@ -29,11 +29,25 @@ class StairsReporterTest : public ::testing::Test {
     return out;
   }
 
+  std::optional<findings::Anchor> anchor(const std::array<double, 3>& place) const {
+    if (!T_map_submap_) return std::nullopt;
+    const Eigen::Vector3f offset =
+        (T_map_submap_->inverse() * Eigen::Vector3d(place[0], place[1], place[2])).cast<float>();
+    return findings::Anchor{
+        2, 4, {offset.x(), offset.y(), offset.z()}, static_cast<float>(T_map_submap_->yaw())};
+  }
+
   VirtualScheduler scheduler_{1};
   std::unique_ptr<Runtime> machine_{scheduler_.machine("r1", 5s)};
   std::shared_ptr<Executor> strand_{machine_->strand("command")};
-  FindingSource source_{{.robot = "r1"}, nullptr, *strand_, nullptr, {}};
-  StairsReporter reporter_{"r1", source_};
+  /// Of the one submap, with the number 4 of start 2.
+  std::optional<Pose3> T_map_submap_{};
+  FindingSource source_{{.robot = "r1"}, nullptr, *strand_, nullptr, {.anchor = [this](const auto& place) {
+                          return anchor(place);
+                        }}};
+  StairsReporter reporter_{"r1", source_, [this](const findings::Anchor& at) {
+                             return at.start == 2 && at.submap == 4 ? T_map_submap_ : std::nullopt;
+                           }};
 };
 
 TEST_F(StairsReporterTest, ReportsOnce) {
@@ -63,9 +77,29 @@ TEST_F(StairsReporterTest, ACorrectedMapMovesItAndMakesNoSecondOne) {
   EXPECT_NEAR(stored()[0].foot.y(), 5.5, 1e-9);
 }
 
+TEST_F(StairsReporterTest, ThoseThatItKnowsMoveWithTheirSubmapAndAreRecognisedThere) {
+  T_map_submap_ = Pose3::level({5, 2, 0}, 0);
+  EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
+  // The map was corrected by 0.5 m and 0.1 rad about the submap's origin.
+  T_map_submap_ = Pose3::level({5, 2.5, 0.1}, 0);
+  ASSERT_EQ(reporter_.all().size(), 1U);
+  const Staircase now = reporter_.all()[0];
+  const Eigen::Vector3d foot = *T_map_submap_ * Eigen::Vector3d(3.0, 0.5, 0.1);
+  EXPECT_LT((now.foot - foot).norm(), 1e-5) << now.foot.transpose();
+  EXPECT_NEAR(now.heading, six_steps().heading + 0.1, 1e-4);
+  // What is seen where it is now is the same flight and is no change, also after a restart.
+  StairsReporter again("r1", source_, [this](const findings::Anchor&) { return T_map_submap_; });
+  EXPECT_TRUE(again.take({7, now}, 2));
+  ASSERT_EQ(stored().size(), 1U);
+  EXPECT_NEAR(stored()[0].foot.y(), 2.5, 1e-9) << "no new revision";
+  // One whose submap is unknown stays where it was reported.
+  T_map_submap_.reset();
+  EXPECT_NEAR(reporter_.all().at(0).foot.y(), 2.5, 1e-9);
+}
+
 TEST_F(StairsReporterTest, AfterARestartItRecognisesWhatItReported) {
   EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
-  StairsReporter again("r1", source_);
+  StairsReporter again("r1", source_, {});
   Staircase part = six_steps();
   part.steps = 4;
   EXPECT_TRUE(again.take({7, part}, 2));
