@@ -21,6 +21,8 @@ constexpr float kSureRange = 4.0f;
 constexpr std::size_t kPlaces = 32;
 constexpr double kSamePlace = 0.6;  // m
 constexpr int kMaxTimes = 4;
+constexpr double kLanding = 0.3;           // m: a floor is before the foot of stairs and behind their top.
+constexpr std::uint8_t kRangeOnFoot = 10;  // kRangeUnit: as of ground that the robot stood on.
 constexpr std::array<int, 8> kAroundX{1, 0, -1, 0, 1, -1, -1, 1};
 constexpr std::array<int, 8> kAroundY{0, 1, 0, -1, 1, 1, -1, -1};
 constexpr std::array<std::size_t, 8> kOpposite{2, 3, 0, 1, 6, 7, 4, 5};
@@ -70,8 +72,39 @@ void SurfaceMap::mark_stairs(const Staircase& stairs) {
       for (int i = first(tx, ty); i >= 0; i = tile(i).next) mark_dirty(i);
 }
 
+void SurfaceMap::lay_stairs(const Staircase& stairs) {
+  visit_cells(stairs, kLanding, [&](int ix, int iy, const OnStairs& place) {
+    const auto z = static_cast<float>(tread_height(stairs, place.along));
+    const int index = surface_layer(ix, iy, z);
+    GroundCell& cell = tile(index).cells[cell_in_tile(ix, iy)];
+    if (cell.known && (cell.sure || cell.blocked)) return;
+    cell.z = z;
+    cell.known = cell.measured = cell.sure = cell.of_stairs = true;
+    cell.range = kRangeOnFoot;
+  });
+  mark_stairs(stairs);
+}
+
+// What scans showed of a step from afar went with it: it was no better than the staircase.
+void SurfaceMap::remove_stairs(const Staircase& stairs) {
+  visit_cells(stairs, kLanding, [&](int ix, int iy, const OnStairs& place) {
+    constexpr float kRounding = 1e-3f;  // m
+    const auto z = static_cast<float>(tread_height(stairs, place.along));
+    for (int i = first(tile_of(ix), tile_of(iy)); i >= 0; i = tile(i).next) {
+      GroundCell& cell = tile(i).cells[cell_in_tile(ix, iy)];
+      if (!cell.of_stairs || std::abs(cell.z - z) > kRounding) continue;
+      if (cell.evidence > 0) {  // Of an obstacle, which is there without the staircase as well.
+        cell.measured = cell.sure = cell.of_stairs = false;
+        cell.range = GroundCell{}.range;
+      } else {
+        cell = {};
+      }
+    }
+  });
+  mark_stairs(stairs);
+}
+
 void SurfaceMap::set_stairs(std::span<const Staircase> stairs) {
-  constexpr double kLanding = 0.3;  // m: a floor is before the foot and behind the top.
   stairs = stairs.first(std::min(stairs.size(), kMaxStairs));
   const std::vector<Staircase> before = std::move(stairs_);
   stairs_.clear();
@@ -79,14 +112,16 @@ void SurfaceMap::set_stairs(std::span<const Staircase> stairs) {
     const auto same =
         std::ranges::find_if(before, [&](const Staircase& b) { return leads_the_same(b, each); });
     stairs_.push_back(same == before.end() ? each : *same);
-    if (same != before.end()) continue;
-    visit_cells(each, kLanding, [&](int ix, int iy, const OnStairs& place) {
-      see_free(ix, iy, static_cast<float>(tread_height(each, place.along)), 0.0f, Seen::given);
-    });
-    mark_stairs(each);
   }
+  const auto lacks = [](const std::vector<Staircase>& all, const Staircase& one) {
+    return std::ranges::find(all, one) == all.end();
+  };
+  bool removed = false;
   for (const Staircase& old : before)
-    if (std::ranges::find(stairs_, old) == stairs_.end()) mark_stairs(old);
+    if (lacks(stairs_, old)) remove_stairs(old), removed = true;
+  // Where two staircases meet, the ground of the one that stays was that of the other as well.
+  for (const Staircase& each : stairs_)
+    if (removed || lacks(before, each)) lay_stairs(each);
 }
 
 int SurfaceMap::first(int tx, int ty) const {
@@ -322,7 +357,9 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   const int index = surface_layer(ix, iy, z);
   Tile& t = tile(index);
   GroundCell& cell = t.cells[cell_in_tile(ix, iy)];
-  if (!cell.known) {
+  // From near, scans show the ground themselves.
+  const bool shows_step = cell.of_stairs && measured && range <= kSureRange && cell.evidence <= 0;
+  if (!cell.known || shows_step) {
     cell = {};
     (void)update_height(cell, z, range, measured);
     mark_dirty(index);
@@ -333,7 +370,7 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
     return;
   }
   const float before = cell.z;
-  if (update_height(cell, z, range, measured)) mark_around(t, ix, iy, true);
+  if (!cell.of_stairs && update_height(cell, z, range, measured)) mark_around(t, ix, iy, true);
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
   if (std::abs(cell.z - before) > 0.05f) mark_around(t, ix, iy);  // A step may have appeared or disappeared.
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
@@ -342,9 +379,10 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   cell.evidence = static_cast<std::int8_t>(cell.evidence - kRay);
   if (!cell.blocked || cell.evidence > kFree) return;
   cell.blocked = false;
-  // Its height was measured before the obstacle appeared.
-  cell.known = cell.measured = cell.sure = false;
-  (void)update_height(cell, z, range, measured);
+  if (!cell.of_stairs) {  // Its height was measured before the obstacle appeared.
+    cell.known = cell.measured = cell.sure = false;
+    (void)update_height(cell, z, range, measured);
+  }
   cell.obstacle_height = 0;
   mark_dirty(index);
   mark_around(t, ix, iy);

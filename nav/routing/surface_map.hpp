@@ -77,7 +77,8 @@ class SurfaceMap {
   void set_areas(const AreaSet& areas);
   const AreaSet& areas() const { return areas_; }
   /// Sets the staircases that are known, at most kMaxStairs, in the frame of the poses. Their steps become
-  /// known ground, seen or not; TileBuilder decides who may cross them.
+  /// known ground where no scan from near shows any; TileBuilder decides who may cross them. The ground of
+  /// one that moved or is not known any more is forgotten.
   void set_stairs(std::span<const Staircase> stairs);
   const std::vector<Staircase>& stairs() const { return stairs_; }
 
@@ -143,6 +144,8 @@ class SurfaceMap {
   void mark_around(const Tile& tile, int ix, int iy, bool doubtful_only = false);
   void mark_place(const BlockedPlace& place);
   void mark_stairs(const Staircase& stairs);
+  void lay_stairs(const Staircase& stairs);
+  void remove_stairs(const Staircase& stairs);
 
   RouteParams params_;
   float same_;

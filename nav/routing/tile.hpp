@@ -27,6 +27,8 @@ struct GroundCell {
   bool measured : 1 {false};  ///< The height was measured; else interpolated between returns.
   bool blocked : 1 {false};
   bool sure : 1 {false};  ///< Height or obstacle was seen from near, which proves a step.
+  /// The height is that of a known staircase: it goes with it, and no scan from near measured it.
+  bool of_stairs : 1 {false};
   /// How exactly the height was measured: as by one scan from so far away, kRangeUnit.
   std::uint8_t range{255};
   /// Position of the obstacle relative to the cell's centre, kAsideUnit.

@@ -122,6 +122,72 @@ TEST(KnownStairs, WheelsDoNotTakeThemAndTheReasonNamesThem) {
   EXPECT_TRUE(planner.map().stairs().empty());
 }
 
+TEST(KnownStairs, TheGroundOfOneThatIsNotKnownAnyMoreGoesWithIt) {
+  RoutePlanner planner(legged(), seen_only());
+  show_floors(planner);
+  planner.set_stairs(std::vector{nine_steps()});
+  EXPECT_TRUE(planner.plan({1, 2, 0}, {9.5, 2, kUpper}).found());
+  planner.set_stairs({});
+  EXPECT_FALSE(planner.plan({1, 2, 0}, {9.5, 2, kUpper}).found());
+  EXPECT_FALSE(planner.ground(6.0, 2.0, 0.6));
+  EXPECT_TRUE(planner.ground(4.5, 2.0, 0.0)) << "the floor before it was seen";
+}
+
+TEST(KnownStairs, TheGroundMovesWithThem) {
+  RoutePlanner planner(legged(), seen_only());
+  show_floors(planner);
+  Staircase narrow = nine_steps(), moved = nine_steps();
+  narrow.width = moved.width = 0.8;
+  moved.foot.y() += 0.3;
+  const double z = tread_height(moved, 1.05);
+  for (const Staircase& stairs : {narrow, moved, narrow, moved}) {
+    planner.set_stairs(std::vector{stairs});
+    const bool aside = stairs == moved;
+    EXPECT_EQ(planner.ground(6.05, 1.65, z).has_value(), !aside);
+    EXPECT_EQ(planner.ground(6.05, 2.65, z).has_value(), aside);
+    ASSERT_TRUE(planner.ground(6.05, 2.15, z));
+    EXPECT_NEAR(*planner.ground(6.05, 2.15, z), z, 1e-5) << "both of them are there";
+  }
+}
+
+TEST(KnownStairs, WhatScansShowedOfThemFromNearStays) {
+  SurfaceMap map({}, 0.1f);
+  const auto see = [&](double robot_x, double x, float z, SurfaceMap::Seen seen) {
+    map.begin_scan(robot_x, 2.0);
+    map.see_free(route_cell(x), route_cell(2.05), z, 0.0f, seen);
+  };
+  const auto height = [&](double x) -> std::optional<float> {
+    const GroundCell* cell = map.cell(route_cell(x), route_cell(2.05), 0.5);
+    return cell && cell->known ? std::optional(cell->z) : std::nullopt;
+  };
+  const Staircase stairs = nine_steps();
+  see(4.0, 5.15, 0.13f, SurfaceMap::Seen::measured);
+  map.set_stairs(std::vector{stairs});
+  EXPECT_EQ(height(5.15), 0.13f) << "seen from 1 m before it was known";
+  see(4.0, 5.45, 0.3f, SurfaceMap::Seen::measured);
+  EXPECT_EQ(height(5.45), 0.3f) << "seen from 1 m";
+  see(4.0, 5.75, 0.45f, SurfaceMap::Seen::between);
+  see(0.0, 6.05, 0.6f, SurfaceMap::Seen::measured);
+  EXPECT_NEAR(height(5.75).value_or(0), 0.48f, 1e-5) << "between returns";
+  EXPECT_NEAR(height(6.05).value_or(0), 0.64f, 1e-5) << "from afar";
+  map.set_stairs({});
+  EXPECT_EQ(height(5.15), 0.13f);
+  EXPECT_EQ(height(5.45), 0.3f);
+  EXPECT_FALSE(height(5.75));
+  EXPECT_FALSE(height(6.05));
+}
+
+TEST(KnownStairs, WhatStoodOnThemIsThereWithoutThem) {
+  SurfaceMap map({}, 0.1f);
+  map.begin_scan(0.0, 2.0);
+  map.set_stairs(std::vector{nine_steps()});
+  map.see_obstacle(6.05f, 2.05f, 0.64f, 0.8f, true);
+  map.set_stairs({});
+  const GroundCell* cell = map.cell(route_cell(6.05), route_cell(2.05), 0.64);
+  ASSERT_TRUE(cell);
+  EXPECT_TRUE(cell->blocked);
+}
+
 TEST(KnownStairs, LegsDoNotTakeStepsAboveTheirs) {
   Platform low = legged();
   low.step = 0.15;
