@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nav/routing/known_stairs.hpp"
 
-#include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "core/geometry/pose.hpp"
 
@@ -13,19 +14,18 @@ bool leads_the_same(const Staircase& a, const Staircase& b) {
          std::abs(a.width - b.width) < 2 * kShift && std::abs(wrap_angle(a.heading - b.heading)) < kTurn;
 }
 
-std::optional<Staircase> between(std::span<const Staircase> stairs, double from, double to) {
-  std::optional<Staircase> best;
-  double least = std::abs(to - from) - kSameStorey;
-  for (const Staircase& each : stairs)
-    for (const bool up : {true, false}) {
-      const double begin = up ? each.floor_below() : each.floor_above();
-      const double end = up ? each.floor_above() : each.floor_below();
-      const double left = std::abs(to - end);
-      if (std::abs(begin - from) > kSameStorey || left >= least) continue;
-      least = left;
-      best = each;
-    }
-  return best;
+std::vector<Flight> flights_towards(std::span<const Staircase> stairs, double height) {
+  std::vector<Flight> flights;
+  for (const Staircase& each : stairs) {
+    const double below = std::abs(height - each.floor_below()), above = std::abs(height - each.floor_above());
+    if (std::abs(below - above) < kSameStorey) continue;
+    const Eigen::Vector2d clear = kStairsApproach * each.direction();
+    const Eigen::Vector2d foot = each.foot.head<2>() - clear, top = each.top().head<2>() + clear;
+    Flight flight{each, {foot.x(), foot.y(), each.floor_below()}, {top.x(), top.y(), each.floor_above()}};
+    if (below < above) std::swap(flight.begin, flight.end);
+    flights.push_back(flight);
+  }
+  return flights;
 }
 
 }  // namespace adit::nav

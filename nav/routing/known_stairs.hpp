@@ -32,8 +32,13 @@ void visit_cells(const Staircase& stairs, double margin, Visit&& visit) {
     }
 }
 
-/// A staircase that leads from the height of `from` towards that of `to`, for the reason why a body that does
-/// not climb finds no way, m. Nothing if there is none.
-std::optional<Staircase> between(std::span<const Staircase> stairs, double from, double to);
+/// A way over a staircase, between the places where a body stands before it and behind it, m.
+struct Flight {
+  Staircase stairs{};
+  Eigen::Vector3d begin{0, 0, 0}, end{0, 0, 0};
+};
+
+/// The flights that lead nearer to a height by another storey at least, m.
+std::vector<Flight> flights_towards(std::span<const Staircase> stairs, double height);
 
 }  // namespace adit::nav

@@ -150,14 +150,13 @@ void RouteFollower::take(Route route, bool same) {
 // A way up that was not seen is a guess. While the route consists of that guess, and stairs lead there that
 // are closed to the body, it is worth as many metres as a goal that was not seen (`--budget` of goto). Height
 // that was gained proves a ramp.
-std::optional<Staircase> RouteFollower::give_up_search(const RoutePlanner& planner,
-                                                       const RouteRequest& request) {
+std::optional<Staircase> RouteFollower::give_up_search(RoutePlanner& planner, const RouteRequest& request) {
   constexpr double kMinSearch = 20.0, kDetour = 1.5;  // m, times the straight line.
   constexpr double kGained = 0.5;  // m: more than the error of heights, less than half a storey.
   const double height = std::abs(request.goal.z() - request.place.z());
-  const auto stairs =
-      std::isfinite(height) ? planner.closed_stairs(request.place.z(), request.goal.z()) : std::nullopt;
-  if (!stairs || !changes_floor_unseen(route_)) {
+  const bool guesses = std::isfinite(height) && height > kSameStorey && changes_floor_unseen(route_) &&
+                       planner.has_closed_stairs(request.goal.z());
+  if (!guesses) {
     search_.reset();
     return std::nullopt;
   }
@@ -169,7 +168,11 @@ std::optional<Staircase> RouteFollower::give_up_search(const RoutePlanner& plann
     search_->left -= step;
     search_->at = at;
   }
-  return search_->left > 0.0 ? std::nullopt : stairs;
+  if (search_->left > 0.0) return std::nullopt;
+  // No staircase that the robot can reach leads there: the guess may be right.
+  const auto stairs = planner.closed_stairs(request.place, request.goal);
+  if (!stairs) search_.reset();
+  return stairs;
 }
 
 void RouteFollower::clear() {

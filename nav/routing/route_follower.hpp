@@ -89,7 +89,7 @@ class RouteFollower {
   void watch_passage(RoutePlanner& planner, const Eigen::Vector3d& place);
   void take(Route route, bool same);
   /// Counts the metres of the search for a way round closed stairs. Returns the stairs once they are used up.
-  std::optional<Staircase> give_up_search(const RoutePlanner& planner, const RouteRequest& request);
+  std::optional<Staircase> give_up_search(RoutePlanner& planner, const RouteRequest& request);
 
   // Minimum of RouteStep::target's distance, except at the goal, m.
   static constexpr double kLeastAhead = 1.2;

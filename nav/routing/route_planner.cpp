@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nav/routing/route_planner.hpp"
 
+#include <algorithm>
 #include <cmath>
-
-#include "nav/routing/known_stairs.hpp"
 
 namespace adit::nav {
 namespace {
@@ -145,11 +144,69 @@ void RoutePlanner::finish_ends(Route& route, const Eigen::Vector3d& from, const 
   }
 }
 
-std::optional<Staircase> RoutePlanner::closed_stairs(double from, double to) const {
-  std::vector<Staircase> closed;
-  for (const Staircase& stairs : map_.stairs())
-    if (!climbs(platform_, stairs)) closed.push_back(stairs);
-  return between(closed, from, to);
+std::vector<Staircase> RoutePlanner::closed() const {
+  std::vector<Staircase> stairs;
+  std::ranges::copy_if(map_.stairs(), std::back_inserter(stairs),
+                       [this](const Staircase& each) { return !climbs(platform_, each); });
+  return stairs;
+}
+
+bool RoutePlanner::has_closed_stairs(double height) const {
+  return !flights_towards(closed(), height).empty();
+}
+
+bool RoutePlanner::leads_on(const Flight& flight, const std::optional<RouteEnd>& goal,
+                            const Eigen::Vector3d& to) {
+  if (!goal) {
+    const OnStairs place = on_stairs(flight.stairs, to.x(), to.y());
+    return place.along >= -kStairsApproach && place.along <= length_of(flight.stairs) + kStairsApproach &&
+           std::abs(place.across) <= flight.stairs.width / 2 &&
+           std::abs(tread_height(flight.stairs, place.along) - to.z()) < kSameStorey;
+  }
+  const auto behind = find_end(flight.end, kStartReach);
+  if (!behind || behind->tile < 0 || std::abs(behind->place.z() - flight.end.z()) > kSameStorey) return true;
+  std::vector<Eigen::Vector3d> points;
+  return search_.search(*behind, *goal, points) == RouteStatus::found;
+}
+
+std::optional<Staircase> RoutePlanner::closed_stairs(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  constexpr int kSearches = 8;  // Each may cross the whole map.
+  const Eigen::Vector3d goal_place{to.x(), to.y(), goal_height(from, to)};
+  std::vector<Flight> left = flights_towards(closed(), goal_place.z());
+  if (left.empty()) return std::nullopt;
+  const auto goal = find_end(goal_place, params_.snap);
+  // A flight that is reached, and the first one on the way to it.
+  struct Reached {
+    Flight flight;
+    Staircase first;
+    double length;  // Up to its end, and straight on to the goal, m.
+  };
+  std::vector<Reached> open;
+  const auto reach = [&](const Eigen::Vector3d& place, const Staircase* first) {
+    std::vector<Eigen::Vector3d> begins;
+    for (const Flight& flight : left) begins.push_back(flight.begin);
+    const std::vector<float> found = costs(place, begins);
+    std::vector<Flight> others;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const Flight& flight = left[i];
+      if (found[i] < kUnreached)
+        open.push_back(
+            {flight, first ? *first : flight.stairs,
+             double{found[i]} + (flight.end - flight.begin).norm() + (goal_place - flight.end).norm()});
+      else
+        others.push_back(flight);
+    }
+    left = std::move(others);
+  };
+  reach(from, nullptr);
+  for (int n = 0; n < kSearches && !open.empty(); ++n) {
+    const auto next = std::ranges::min_element(open, {}, &Reached::length);
+    const Reached tried = *next;
+    open.erase(next);
+    if (leads_on(tried.flight, goal, goal_place)) return tried.first;
+    if (!left.empty()) reach(tried.flight.end, &tried.first);
+  }
+  return std::nullopt;
 }
 
 Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -168,7 +225,7 @@ Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
     route.status = RouteStatus::unreachable;
   else
     route.status = search_.search(*start, *goal, route.points);
-  if (route.status == RouteStatus::unreachable) route.stairs = closed_stairs(from.z(), goal_place.z());
+  if (route.status == RouteStatus::unreachable) route.stairs = closed_stairs(from, goal_place);
   if (!route.found()) return route;
   line_.shorten(route.points);
   line_.measure(route);

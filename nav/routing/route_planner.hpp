@@ -8,6 +8,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/geometry/scan_points.hpp"
 #include "nav/routing/ground_registration.hpp"
+#include "nav/routing/known_stairs.hpp"
 #include "nav/routing/narrow_passage.hpp"
 #include "nav/routing/route_line.hpp"
 #include "nav/routing/route_search.hpp"
@@ -38,8 +39,12 @@ class RoutePlanner {
 
   /// Sets the known staircases, frame of the poses: see SurfaceMap::set_stairs() and TileBuilder.
   void set_stairs(std::span<const Staircase> stairs) { map_.set_stairs(stairs); }
-  /// A known staircase from one height towards another that the body does not climb.
-  std::optional<Staircase> closed_stairs(double from, double to) const;
+  /// Whether a known staircase that the body does not climb leads nearer to a height, m.
+  bool has_closed_stairs(double height) const;
+  /// The first known staircase on the way between two places, for a body that does not climb it: known ground
+  /// leads to its one end, and from its other end a route leads to the goal, perhaps over further ones. A
+  /// goal or an end where no body has room counts as reached from the staircase that it is at.
+  std::optional<Staircase> closed_stairs(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   /// Plans a route between two places. z NaN in the goal: the floor nearest to the start's, or any floor if
   /// none is known there. A route never crosses a known obstacle. Steps up to 0.36 m that were only seen from
   /// afar cost RouteParams::doubtful_cost.
@@ -74,6 +79,10 @@ class RoutePlanner {
   }
 
  private:
+  std::vector<Staircase> closed() const;
+  /// Whether a route leads from behind a staircase to the goal; also true where the map shows no ground
+  /// there.
+  bool leads_on(const Flight& flight, const std::optional<RouteEnd>& goal, const Eigen::Vector3d& to);
   bool is_blocked_between(const Eigen::Vector3d& place, int ix, int iy) const;
   std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach);
   double goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;

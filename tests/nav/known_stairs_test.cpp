@@ -199,14 +199,71 @@ TEST(KnownStairs, LegsDoNotTakeStepsAboveTheirs) {
   EXPECT_TRUE(route.stairs);
 }
 
-TEST(KnownStairs, TheReasonNamesOnlyWhatLeadsTowardsTheGoal) {
+TEST(KnownStairs, AFlightLeadsTowardsAHeightByAStoreyAtLeast) {
   const std::vector<Staircase> stairs{nine_steps()};
-  EXPECT_TRUE(between(stairs, 0.0, kUpper));
-  EXPECT_TRUE(between(stairs, 0.0, 4.8)) << "the first of several flights";
-  EXPECT_TRUE(between(stairs, kUpper, 0.0));
-  EXPECT_FALSE(between(stairs, 0.0, 0.0));
-  EXPECT_FALSE(between(stairs, 0.0, -3.0));
-  EXPECT_FALSE(between(stairs, 4.0, 8.0));
+  const auto up = flights_towards(stairs, kUpper);
+  ASSERT_EQ(up.size(), 1U);
+  EXPECT_LT((up[0].begin - Eigen::Vector3d(4.2, 2, 0)).norm(), 1e-9) << up[0].begin.transpose();
+  EXPECT_LT((up[0].end - Eigen::Vector3d(8.2, 2, kUpper)).norm(), 1e-9) << up[0].end.transpose();
+  EXPECT_EQ(flights_towards(stairs, 4.8).size(), 1U) << "the first of several flights";
+  const auto down = flights_towards(stairs, -3.0);
+  ASSERT_EQ(down.size(), 1U);
+  EXPECT_GT(down[0].begin.z(), down[0].end.z());
+  EXPECT_TRUE(flights_towards(stairs, kUpper / 2).empty());
+}
+
+/// A floor of so many cells with walls around it, from a cell on.
+void show_room(RoutePlanner& planner, int x0, int y0, int nx, int ny, double z) {
+  for (int y = 0; y < ny; ++y)
+    for (int x = 0; x < nx; ++x)
+      if (y % (ny - 1) == 0 || x % (nx - 1) == 0)
+        planner.set_obstacle(middle(x0 + x, y0 + y, z), 2.5);
+      else
+        planner.set_ground(middle(x0 + x, y0 + y, z));
+}
+
+TEST(KnownStairs, TheReasonNamesOnlyStairsThatTheRobotReaches) {
+  Staircase elsewhere = nine_steps();
+  elsewhere.foot += Eigen::Vector3d(60, 80, 0);
+  RoutePlanner planner(wheeled());
+  show_floors(planner);
+  for (int y = 12; y < 28; ++y) planner.set_obstacle(middle(60, y, 0.6), 2.5);
+  for (int y = 12; y < 28; ++y) planner.set_obstacle(middle(60, y, 0.0), 2.5);
+  planner.set_stairs(std::vector{elsewhere});
+  const Route other = planner.plan({1, 2, 0}, {9.5, 2, kUpper});
+  EXPECT_EQ(other.status, RouteStatus::unreachable);
+  EXPECT_FALSE(other.stairs) << "a staircase of other floors";
+  planner.set_stairs(std::vector{elsewhere, nine_steps()});
+  const Route named = planner.plan({1, 2, 0}, {9.5, 2, kUpper});
+  EXPECT_EQ(named.status, RouteStatus::unreachable);
+  ASSERT_TRUE(named.stairs);
+  EXPECT_EQ(*named.stairs, nine_steps());
+}
+
+TEST(KnownStairs, TheReasonNamesOnlyStairsFromWhichARouteLeadsToTheGoal) {
+  RoutePlanner planner(wheeled());
+  show_floors(planner);
+  show_room(planner, 150, 0, 40, 40, kUpper);
+  planner.finish();
+  planner.set_stairs(std::vector{nine_steps()});
+  const Route route = planner.plan({1, 2, 0}, {17, 2, kUpper});
+  EXPECT_EQ(route.status, RouteStatus::unreachable);
+  EXPECT_FALSE(route.stairs) << "a wall is between their upper end and the goal";
+}
+
+TEST(KnownStairs, TheReasonNamesTheFirstOfTwoFlights) {
+  Staircase second = nine_steps();
+  second.foot += Eigen::Vector3d(5.0, 0, kUpper);
+  RoutePlanner planner(wheeled());
+  show_room(planner, 0, 0, 50, 40, 0.0);
+  show_room(planner, 75, 0, 25, 40, kUpper);
+  show_room(planner, 125, 0, 40, 40, 2 * kUpper);
+  planner.finish();
+  planner.set_stairs(std::vector{second, nine_steps()});
+  const Route route = planner.plan({1, 2, 0}, {15, 2, 2 * kUpper});
+  EXPECT_EQ(route.status, RouteStatus::unreachable);
+  ASSERT_TRUE(route.stairs);
+  EXPECT_EQ(*route.stairs, nine_steps());
 }
 
 /// Nine steps of 0.16 m down along x from the edge of a landing at x = 0, between walls.
@@ -310,6 +367,15 @@ TEST(KnownStairs, WheelsSearchAWayRoundForSoManyMetresAndNameTheStairs) {
   ASSERT_TRUE(last.stairs);
   EXPECT_EQ(*last.stairs, nine_steps());
   EXPECT_LE(driven, 21.0);
+}
+
+TEST(KnownStairs, AStaircaseThatWheelsCannotReachEndsNoSearch) {
+  Staircase elsewhere = nine_steps();
+  elsewhere.foot += Eigen::Vector3d(60, 80, 0);
+  RouteStep last;
+  const double driven = driven_before_giving_up({elsewhere}, last);
+  EXPECT_FALSE(last.stairs) << driven << " m";
+  EXPECT_NE(last.goal, Standing::over_stairs);
 }
 
 TEST(KnownStairs, ARouteBeginsOnTheGroundThatTheRobotIsOn) {
