@@ -230,13 +230,16 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
 
   const bool routes_it = params.platform.router != "none";
   const bool maps_it = params.perception == PerceptionLevel::slam;
-  e.stairs = params.perception != PerceptionLevel::off
-                 ? std::make_unique<StairsReporter>(
-                       params.name, *e.findings,
-                       [&e](const findings::Anchor& anchor) -> std::optional<Pose3> {
-                         return e.map ? e.map->submap_pose(anchor.start, anchor.submap) : std::nullopt;
-                       })
-                 : nullptr;
+  e.stairs =
+      params.perception != PerceptionLevel::off
+          ? std::make_unique<StairsReporter>(
+                params.name, *e.findings,
+                StairsReporter::Submaps{[&e](const findings::Anchor& anchor) -> std::optional<Pose3> {
+                                          return e.map ? e.map->submap_pose(anchor.start, anchor.submap)
+                                                       : std::nullopt;
+                                        },
+                                        [&e] { return e.map ? e.map->pose_changes() : std::uint64_t{0}; }})
+          : nullptr;
   for (Unit* unit : {&planner, &router, &sensors, &map, &stairs})
     if ((unit != &router || routes_it) && (unit != &map || maps_it) && (unit != &stairs || e.stairs))
       if (const auto opened = unit->open(); !opened) return opened.error();

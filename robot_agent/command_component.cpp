@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/time/random.hpp"
+#include "nav/routing/known_stairs.hpp"
 #include "robot_agent/behaviour/modes/external.hpp"
 #include "robot_agent/common/console_answer.hpp"
 
@@ -56,7 +57,9 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
       frames_(params.start, params.platform, params.start_height),
       router_(command, log(), params_.platform, frames_, context.router.get(),
               {[this] { return navigation_.route_areas(); }, [this] { return team(now()); },
-               [this] { return known_stairs(); }}),
+               [this](std::span<const Eigen::Vector3d> places) {
+                 return nav::nearest_stairs(known_stairs(), places, nav::SurfaceMap::kMaxStairs);
+               }}),
       navigation_(navigation_params(params), command, log(), frames_, context.planner, context.router.get(),
                   navigation_outputs()),
       mux_(navigation_),

@@ -98,6 +98,7 @@ LoadReport FindingStore::load() {
     }
     all_.emplace(finding.key, std::move(finding));
   }
+  ++changes_;
   return report;
 }
 
@@ -130,20 +131,23 @@ bool FindingStore::put(Finding finding) {
   if (found != all_.end() && revision <= found->second.revision) return true;
   if (found == all_.end() && full()) return false;
   all_.insert_or_assign(key, std::move(finding));
+  ++changes_;
   if (!disk_) {
     outputs_.stored(key, revision);
     return true;
   }
   dropped_.erase(key);
-  unsaved_.try_emplace(key, Work{.order = tries_}).first->second.change = ++changes_;
+  unsaved_.try_emplace(key, Work{.order = tries_}).first->second.change = changes_;
   write();
   return true;
 }
 
 void FindingStore::drop(const Key& key) {
-  if (all_.erase(key) == 0 || !disk_) return;
+  if (all_.erase(key) == 0) return;
+  ++changes_;
+  if (!disk_) return;
   unsaved_.erase(key);
-  dropped_.emplace(key, Work{.change = ++changes_, .order = tries_});
+  dropped_.emplace(key, Work{.change = changes_, .order = tries_});
   write();
 }
 

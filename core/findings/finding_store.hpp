@@ -64,6 +64,8 @@ class FindingStore {
   void flush();
 
   const std::map<Key, Finding>& all() const { return all_; }
+  /// Rises with each change of all().
+  std::uint64_t changes() const { return changes_; }
   bool full() const { return all_.size() >= params_.max_findings; }
   /// Whether the finding is on disk in its newest revision.
   bool is_stored(const Key& key) const { return all_.contains(key) && !unsaved_.contains(key); }

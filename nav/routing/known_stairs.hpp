@@ -2,7 +2,6 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,6 +30,11 @@ void visit_cells(const Staircase& stairs, double margin, Visit&& visit) {
         visit(ix, iy, place);
     }
 }
+
+/// The staircases that are nearest to one of the places, at most `most`, in the order of `stairs`. A place
+/// whose height is NaN may be at any.
+std::vector<Staircase> nearest_stairs(std::span<const Staircase> stairs,
+                                      std::span<const Eigen::Vector3d> places, std::size_t most);
 
 /// A way over a staircase, between the places where a body stands before it and behind it, m.
 struct Flight {

@@ -2,8 +2,11 @@
 #include "robot_agent/motion/navigation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+
+#include "nav/routing/known_stairs.hpp"
 
 namespace adit::agent {
 namespace {
@@ -318,7 +321,8 @@ void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now, st
   job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
   job->areas = route_areas();
-  job->stairs = stairs_;
+  job->stairs = nav::nearest_stairs(stairs_, std::array{job->place, job->goal.value_or(job->place)},
+                                    nav::SurfaceMap::kMaxStairs);
   job->made = now;
   routing_ = true;
   call(router_->step, job, {.deadline = kAnswerDeadline},
@@ -347,7 +351,8 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   job->state = recovery_.state();
   if (std::holds_alternative<GoTo>(motion_)) job->target = recovery_.target(job->target);
   job->peers = peers_;
-  job->stairs = stairs_;
+  job->stairs =
+      nav::nearest_stairs(stairs_, std::array{frames_.T_odom_base().position}, nav::SurfaceMap::kMaxStairs);
   job->pose = frames_.T_odom_base().planar();
   if (is_bound() && !fence_.empty()) job->border = fence_.border(frames_, kBorderRange);
   job->odom_epoch = frames_.odom_epoch();

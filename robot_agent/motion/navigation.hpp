@@ -69,7 +69,8 @@ class Navigation : public Component, public NavigationInput {
   }
   /// The areas in the odometry frame, for the router.
   RouteAreas route_areas() const { return {fence_.all(), fence_.routable()}; }
-  /// Sets the known staircases, odometry frame, for the router.
+  /// Sets the known staircases, odometry frame. The planners get those that are nearest to the robot and to
+  /// its goal.
   void set_stairs(std::vector<Staircase> stairs) { stairs_ = std::move(stairs); }
   /// Whether the body is so far on forbidden ground that it does not come back by itself.
   bool is_far_out() const { return fence_.is_far_out(); }

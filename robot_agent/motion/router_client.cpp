@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/motion/router_client.hpp"
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -29,10 +30,11 @@ RouterClient::RouterClient(Executor& strand, Log log, const Platform& platform, 
       inputs_(std::move(inputs)) {}
 
 template <class Query, class Answer, class DoneFn>
-void RouterClient::ask(const Service<Query, Answer>& service, Query query, Duration deadline, DoneFn done) {
+void RouterClient::ask(const Service<Query, Answer>& service, Query query,
+                       std::optional<Eigen::Vector3d> goal, Duration deadline, DoneFn done) {
   query.odom_epoch = frames_.odom_epoch();
   query.areas = inputs_.areas();
-  if (inputs_.stairs) query.stairs = inputs_.stairs();
+  if (inputs_.stairs) query.stairs = inputs_.stairs(std::array{place(), goal.value_or(place())});
   call(service, query, {.deadline = deadline},
        [this, epoch = query.odom_epoch, done = std::move(done)](const Result<Answer>& answer) {
          done(answer, epoch == frames_.odom_epoch());
@@ -48,7 +50,7 @@ void RouterClient::find_route(const Eigen::Vector3d& goal, const Done<PlannedRou
     RouteQuery query{};
     query.from = place();
     query.to = frames_.to_odom(goal);
-    ask(services_->find, std::move(query), kFind,
+    ask(services_->find, query, query.to, kFind,
         [this, done](const Result<nav::Route>& route, bool same_frame) {
           if (!route) return done({Reason::no_answer, "the router does not answer; see health"});
           if (!same_frame) return done({Reason::odometry_jumped, "the odometry jumped meanwhile"});
@@ -66,7 +68,7 @@ void RouterClient::check_goal(const Eigen::Vector3d& goal, bool replace, const D
     query.from = place();
     query.to = frames_.to_odom(goal);
     query.replace = replace;
-    ask(services_->check, std::move(query), kCheck,
+    ask(services_->check, query, query.to, kCheck,
         [this, goal, done](const Result<nav::GoalFinding>& found, bool same_frame) {
           if (!found) return done(found.error());
           if (!same_frame) return done({Reason::odometry_jumped, "the odometry jumped meanwhile"});
@@ -90,7 +92,7 @@ void RouterClient::explore(const NextPlaceQuery& asked, const Done<nav::ExploreS
     (void)query.within.add(std::move(within));
   }
   query.made = now();
-  ask(services_->explore, std::move(query), kExplore,
+  ask(services_->explore, std::move(query), std::nullopt, kExplore,
       [this, done](const Result<nav::ExploreStep>& found, bool same_frame) {
         if (!found) return done(found);
         if (!same_frame) return;
@@ -112,7 +114,7 @@ void RouterClient::find_clear_place(const nav::Corridor& corridor, const std::st
   query.team = inputs_.team();
   for (TeamRobot& robot : query.team)
     if (robot.name == asker) robot.cost = nav::kNoWay;
-  ask(services_->clear, std::move(query), kClear,
+  ask(services_->clear, std::move(query), std::nullopt, kClear,
       [this, done = std::move(done)](const Result<std::optional<Eigen::Vector3d>>& found, bool same_frame) {
         if (!same_frame) return;
         if (!found || !*found) return done(std::nullopt);

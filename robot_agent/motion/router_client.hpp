@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,10 @@ namespace adit::agent {
 class RouterClient : public Component {
  public:
   struct Inputs {
-    std::function<RouteAreas()> areas{};               ///< Odometry frame.
-    std::function<std::vector<TeamRobot>()> team{};    ///< The other robots, odometry frame.
-    std::function<std::vector<Staircase>()> stairs{};  ///< The known staircases, odometry frame.
+    std::function<RouteAreas()> areas{};             ///< Odometry frame.
+    std::function<std::vector<TeamRobot>()> team{};  ///< The other robots, odometry frame.
+    /// The known staircases for these places, odometry frame, m: as many as the router takes.
+    std::function<std::vector<Staircase>(std::span<const Eigen::Vector3d> places)> stairs{};
   };
   template <class T>
   using Done = std::function<void(const Result<T>&)>;
@@ -48,9 +50,11 @@ class RouterClient : public Component {
  private:
   /// Position of the body, odometry frame, m.
   const Eigen::Vector3d& place() const { return frames_.T_odom_base().position; }
-  /// Calls a service; `done` receives the answer, and whether the odometry frame is still the same.
+  /// Calls a service; `done` receives the answer, and whether the odometry frame is still the same. `goal`:
+  /// of the query, odometry frame, m; none: the place of the body.
   template <class Query, class Answer, class DoneFn>
-  void ask(const Service<Query, Answer>& service, Query query, Duration deadline, DoneFn done);
+  void ask(const Service<Query, Answer>& service, Query query, std::optional<Eigen::Vector3d> goal,
+           Duration deadline, DoneFn done);
 
   const Platform& platform_;
   const Frames& frames_;

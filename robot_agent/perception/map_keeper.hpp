@@ -67,6 +67,8 @@ class MapKeeper {
 
   /// Pose in the map of the submap of that key, as it is now; nothing: unknown.
   std::optional<Pose3> submap_pose(std::uint64_t start, std::uint32_t index) const;
+  /// Rises with each change of a submap's pose.
+  std::uint64_t pose_changes() const { return poses_.changes(); }
 
   /// Whether a station lacks so much that what is ahead of the robot should go first.
   bool is_behind() const { return blocks_.is_behind(); }

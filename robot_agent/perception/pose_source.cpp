@@ -28,12 +28,14 @@ std::optional<perception::SubmapPose> PoseSource::pose(std::uint32_t submap) con
 }
 
 void PoseSource::drop(std::uint32_t submap) {
+  ++changes_;
   poses_.erase(submap);
   names_.erase(submap);
   for (auto& [id, lacks] : peers_) lacks.erase(submap);
 }
 
 void PoseSource::update(std::uint32_t submap, const Pose3& T_map_submap) {
+  ++changes_;
   const auto [found, added] = poses_.try_emplace(submap);
   const auto named = names_.find(submap);
   if (added && named != names_.end()) found->second.revision = named->second.revision;

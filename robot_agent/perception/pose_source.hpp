@@ -27,6 +27,8 @@ class PoseSource final : public transfer::Source {
   void drop(std::uint32_t submap);
   /// Poses of all submaps by number; the key, and the revision that stations know.
   std::vector<std::pair<std::uint32_t, perception::SubmapPose>> poses() const;
+  /// Rises with each change of poses().
+  std::uint64_t changes() const { return changes_; }
   /// The pose of one submap; nothing: unknown.
   std::optional<perception::SubmapPose> pose(std::uint32_t submap) const;
 
@@ -64,6 +66,7 @@ class PoseSource final : public transfer::Source {
   std::map<transfer::PeerId, std::set<std::uint32_t>> peers_{};  ///< Submaps whose pose each lacks.
   std::map<std::uint64_t, std::vector<Part>> flights_{};
   std::uint64_t tokens_{};
+  std::uint64_t changes_{};
 };
 
 }  // namespace adit::agent

@@ -32,9 +32,9 @@ std::string stairs_text(const Staircase& stairs) {
 }
 
 Result<Staircase> StairsReporter::present(const findings::Finding& finding) const {
-  const bool anchored = finding.anchor && find_submap_;
+  const bool anchored = finding.anchor && submaps_.pose;
   return findings::stairs_of(
-      finding, findings::placed(finding, anchored ? find_submap_(*finding.anchor) : std::nullopt));
+      finding, findings::placed(finding, anchored ? submaps_.pose(*finding.anchor) : std::nullopt));
 }
 
 std::optional<findings::Key> StairsReporter::known(const Staircase& stairs) const {
@@ -54,13 +54,16 @@ void StairsReporter::withdraw(std::uint64_t id) {
   keys_.erase(named);
 }
 
-std::vector<Staircase> StairsReporter::all() const {
-  std::vector<Staircase> out;
+const std::vector<Staircase>& StairsReporter::all() const {
+  const std::uint64_t changes = findings_.finding_store().changes();
+  const std::uint64_t poses = submaps_.changes ? submaps_.changes() : 0;
+  if (decoded_ && decoded_->findings == changes && decoded_->poses == poses) return decoded_->stairs;
+  decoded_ = Decoded{changes, poses, {}};
   for (const auto& [key, finding] : findings_.finding_store().all()) {
     if (key.robot != robot_ || finding.kind != findings::kStairs || finding.withdrawn) continue;
-    if (const auto stored = present(finding)) out.push_back(*stored);
+    if (const auto stored = present(finding)) decoded_->stairs.push_back(*stored);
   }
-  return out;
+  return decoded_->stairs;
 }
 
 Result<void> StairsReporter::take(const StairsTracker::Tracked& tracked_stairs, std::uint64_t stamp) {

@@ -22,11 +22,15 @@ class StairsReporter {
   static constexpr std::uint8_t kImportance = 5;
   static constexpr std::size_t kMostKeys = 1024;
 
-  /// The present pose of an anchor's submap; may be empty, or return nothing: see findings::placed().
-  using FindSubmap = std::function<std::optional<Pose3>(const findings::Anchor&)>;
+  /// The robot's submaps in the map as it is now. The functions may be empty.
+  struct Submaps {
+    /// The pose of an anchor's submap; nothing: unknown, see findings::placed().
+    std::function<std::optional<Pose3>(const findings::Anchor&)> pose{};
+    std::function<std::uint64_t()> changes{};  ///< Rises with each change of a pose.
+  };
 
-  StairsReporter(std::string robot, FindingSource& findings, FindSubmap find_submap)
-      : robot_(std::move(robot)), findings_(findings), find_submap_(std::move(find_submap)) {}
+  StairsReporter(std::string robot, FindingSource& findings, Submaps submaps)
+      : robot_(std::move(robot)), findings_(findings), submaps_(std::move(submaps)) {}
   /// @param tracked  In the map frame.
   /// @param stamp    The robot's clock, ns.
   /// Errors: as of FindingSource::report().
@@ -34,8 +38,8 @@ class StairsReporter {
   /// It is gone: its finding is withdrawn. An unknown id is ignored.
   void withdraw(std::uint64_t id);
   /// All that this robot reported and has not withdrawn, in the order of their ids, where they are in the map
-  /// as it is now; map frame.
-  std::vector<Staircase> all() const;
+  /// as it is now; map frame. Valid until the next call.
+  const std::vector<Staircase>& all() const;
 
  private:
   /// The staircase of a finding where it is now. Errors: as of findings::stairs_of().
@@ -45,8 +49,14 @@ class StairsReporter {
 
   std::string robot_;
   FindingSource& findings_;
-  FindSubmap find_submap_;
+  Submaps submaps_;
   std::map<std::uint64_t, findings::Key> keys_{};  ///< By id; at most kMostKeys.
+  /// What all() returned last, and the changes of findings and of poses before.
+  struct Decoded {
+    std::uint64_t findings{}, poses{};
+    std::vector<Staircase> stairs{};
+  };
+  mutable std::optional<Decoded> decoded_{};
 };
 
 /// For operators, for example "6 steps of 0.20 m, 1.2 m up".

@@ -43,13 +43,13 @@ class KnownStairsOfAnAgent : public testing::Test {
     ASSERT_EQ(bench->ask(*op, radio::CMD_TAKE), Reason::none);
     bench->run(2s);
     ASSERT_EQ(static_cast<Localisation>(op->state.localisation()), Localisation::ok);
-    bench->agent().report(stairs());
+    bench->agent().report(stairs(1000, {5, 0, 0.08}));
     bench->run(1s);
   }
-  /// Twelve steps of 0.16 m up along x from (5, 0), to 1.92 m.
-  static findings::Finding stairs() {
+  /// Twelve steps of 0.16 m up along x, 1.92 m high.
+  static findings::Finding stairs(std::uint64_t id, const std::array<double, 3>& foot) {
     const Staircase twelve{
-        .foot = {5, 0, 0.08},
+        .foot = {foot[0], foot[1], foot[2]},
         .heading = 0.0,
         .rise = 0.16,
         .run = 0.25,
@@ -57,10 +57,10 @@ class KnownStairsOfAnAgent : public testing::Test {
         .steps = 12,
         .sigma = {.place = 0.02, .heading = 0.01, .rise = 0.004, .run = 0.005, .width = 0.05}};
     findings::Finding finding;
-    finding.key.id = 7;
+    finding.key.id = id;
     finding.kind = findings::kStairs;
     finding.importance = 5;
-    finding.position = {5, 0, 0.08};
+    finding.position = foot;
     finding.data = findings::encode_stairs(twelve);
     return finding;
   }
@@ -105,6 +105,13 @@ TEST_F(KnownStairsOfAnAgent, AreWhereACorrectedMapHasThem) {
   bench->run(2s);
   ASSERT_TRUE(corrected && corrected->ok());
   EXPECT_THAT(plan_above(), HasSubstr("whose foot is at 5.0 0.5"));
+}
+
+TEST_F(KnownStairsOfAnAgent, TheNearestOnesReachTheRouter) {
+  for (std::uint64_t id = 1; id <= 40; ++id)
+    bench->agent().report(stairs(id, {100.0 + 4.0 * static_cast<double>(id), 80.0, 0.08}));
+  bench->run(1s);
+  EXPECT_THAT(plan_above(), HasSubstr("whose foot is at 5.0 0.0"));
 }
 
 TEST_F(KnownStairsOfAnAgent, OfAnEarlierStartCountOnceTheRobotKnowsItsPlace) {

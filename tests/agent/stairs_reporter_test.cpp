@@ -29,6 +29,17 @@ class StairsReporterTest : public ::testing::Test {
     return out;
   }
 
+  StairsReporter::Submaps submaps() {
+    return {[this](const findings::Anchor& at) {
+              ++lookups_;
+              return at.start == 2 && at.submap == 4 ? T_map_submap_ : std::nullopt;
+            },
+            [this] { return pose_changes_; }};
+  }
+  void move_submap(std::optional<Pose3> to) {
+    T_map_submap_ = to;
+    ++pose_changes_;
+  }
   std::optional<findings::Anchor> anchor(const std::array<double, 3>& place) const {
     if (!T_map_submap_) return std::nullopt;
     const Eigen::Vector3f offset =
@@ -45,9 +56,9 @@ class StairsReporterTest : public ::testing::Test {
   FindingSource source_{{.robot = "r1"}, nullptr, *strand_, nullptr, {.anchor = [this](const auto& place) {
                           return anchor(place);
                         }}};
-  StairsReporter reporter_{"r1", source_, [this](const findings::Anchor& at) {
-                             return at.start == 2 && at.submap == 4 ? T_map_submap_ : std::nullopt;
-                           }};
+  std::uint64_t pose_changes_{};
+  int lookups_{};
+  StairsReporter reporter_{"r1", source_, submaps()};
 };
 
 TEST_F(StairsReporterTest, ReportsOnce) {
@@ -78,23 +89,42 @@ TEST_F(StairsReporterTest, ACorrectedMapMovesItAndMakesNoSecondOne) {
 }
 
 TEST_F(StairsReporterTest, ThoseThatItKnowsMoveWithTheirSubmapAndAreRecognisedThere) {
-  T_map_submap_ = Pose3::level({5, 2, 0}, 0);
+  move_submap(Pose3::level({5, 2, 0}, 0));
   EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
   // The map was corrected by 0.5 m and 0.1 rad about the submap's origin.
-  T_map_submap_ = Pose3::level({5, 2.5, 0.1}, 0);
+  move_submap(Pose3::level({5, 2.5, 0.1}, 0));
   ASSERT_EQ(reporter_.all().size(), 1U);
   const Staircase now = reporter_.all()[0];
   const Eigen::Vector3d foot = *T_map_submap_ * Eigen::Vector3d(3.0, 0.5, 0.1);
   EXPECT_LT((now.foot - foot).norm(), 1e-5) << now.foot.transpose();
   EXPECT_NEAR(now.heading, six_steps().heading + 0.1, 1e-4);
   // What is seen where it is now is the same flight and is no change, also after a restart.
-  StairsReporter again("r1", source_, [this](const findings::Anchor&) { return T_map_submap_; });
+  StairsReporter again("r1", source_, submaps());
   EXPECT_TRUE(again.take({7, now}, 2));
   ASSERT_EQ(stored().size(), 1U);
   EXPECT_NEAR(stored()[0].foot.y(), 2.5, 1e-9) << "no new revision";
   // One whose submap is unknown stays where it was reported.
-  T_map_submap_.reset();
+  move_submap(std::nullopt);
   EXPECT_NEAR(reporter_.all().at(0).foot.y(), 2.5, 1e-9);
+}
+
+TEST_F(StairsReporterTest, DecodesThemOnceForEachChange) {
+  move_submap(Pose3::level({5, 2, 0}, 0));
+  EXPECT_TRUE(reporter_.take({1, six_steps()}, 1));
+  const auto lookups_of_all = [this] {
+    const int before = lookups_;
+    EXPECT_FALSE(reporter_.all().empty());
+    return lookups_ - before;
+  };
+  EXPECT_EQ(lookups_of_all(), 1);
+  EXPECT_EQ(lookups_of_all(), 0);
+  move_submap(Pose3::level({5, 3, 0}, 0));
+  EXPECT_EQ(lookups_of_all(), 1);
+  Staircase upper = six_steps();
+  upper.foot.z() += 3.0;
+  EXPECT_TRUE(reporter_.take({2, upper}, 1));
+  EXPECT_EQ(lookups_of_all(), 2);
+  EXPECT_EQ(lookups_of_all(), 0);
 }
 
 TEST_F(StairsReporterTest, AfterARestartItRecognisesWhatItReported) {

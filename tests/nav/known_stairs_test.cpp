@@ -199,6 +199,27 @@ TEST(KnownStairs, LegsDoNotTakeStepsAboveTheirs) {
   EXPECT_TRUE(route.stairs);
 }
 
+TEST(KnownStairs, TheNearestToARobotAndToItsGoalAreTaken) {
+  std::vector<Staircase> stairs;
+  for (int i = 0; i < 6; ++i) {
+    stairs.push_back(nine_steps());
+    stairs.back().foot.x() += 10.0 * i;
+  }
+  const auto feet = [](const std::vector<Staircase>& some) {
+    std::vector<double> out;
+    for (const Staircase& each : some) out.push_back(each.foot.x());
+    return out;
+  };
+  using Ends = std::vector<Eigen::Vector3d>;
+  EXPECT_EQ(feet(nearest_stairs(stairs, Ends{{56, 2, 0}, {28, 2, 0}}, 2)), (std::vector{25.0, 55.0}));
+  EXPECT_EQ(feet(nearest_stairs(stairs, Ends{{47, 2, kNan}}, 1)), (std::vector{45.0})) << "over its steps";
+  EXPECT_EQ(nearest_stairs(stairs, Ends{{0, 0, 0}}, 6), stairs);
+  // Of equal ones, those of another floor are farther.
+  stairs = {nine_steps(), nine_steps()};
+  stairs[0].foot.z() += 6.0;
+  EXPECT_EQ(nearest_stairs(stairs, Ends{{4, 2, 0}}, 1), (std::vector{nine_steps()}));
+}
+
 TEST(KnownStairs, AFlightLeadsTowardsAHeightByAStoreyAtLeast) {
   const std::vector<Staircase> stairs{nine_steps()};
   const auto up = flights_towards(stairs, kUpper);
