@@ -324,6 +324,12 @@ void Commands::go_over_stairs(std::uint64_t handle, const Request& request, cons
         // A state from before a later command of the operator may show that it arrived.
         if (!*accepted || commanded_[robot] != command) return;
         if (!at_near_end.accepted) return later(at_near_end);
+        // A state that was late on its way says where a robot was, not that it is there to be sent on.
+        if (const RobotView* view = fleet_.robot(robot); !view || view->lost)
+          return later(
+              {.robot = robot,
+               .reason = Reason::no_answer,
+               .text = "it came to the stairs, but is not heard any more, and is not sent over them"});
         sender_.send({.robot = robot, .request = far}, later);
       });
   // It goes on when the command line that began it has ended.

@@ -110,6 +110,22 @@ TEST_F(StairsGoTest, AnOldStateThatSaysArrivedIsFollowedByNoGoalAfterAnotherComm
   EXPECT_EQ(goals(0).size(), 1U);
 }
 
+TEST_F(StairsGoTest, ARobotThatIsNotHeardAnyMoreIsNotSentOn) {
+  EXPECT_EQ(execute("stairs go r1 1 up").exit_code, 0);
+  run_for(1s);
+  robots_[0]->alive = false;
+  run_for(10s);
+  // Its state was late on the way.
+  arrive(0);
+  run_for(5s);
+  EXPECT_EQ(goals(0).size(), 1U);
+  const auto answer = op_->last_answer();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->command, "stairs go");
+  EXPECT_EQ(answer->reason, Reason::no_answer);
+  EXPECT_THAT(answer->text, HasSubstr("not heard any more"));
+}
+
 TEST_F(StairsGoTest, TheLogSaysWhyTheNearEndWasNotReached) {
   EXPECT_EQ(execute("stairs go r1 1 up").exit_code, 0);
   robots_[0]->behaviour.reason(static_cast<std::uint16_t>(Reason::goal_unreachable));
