@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What robots find, at a station: on its disk, acknowledged, listed.
 #include "core/findings/finding_piece.hpp"
+#include "core/findings/mark_data.hpp"
 #include "core/store/memory_disk.hpp"
 #include "core/transfer/receiver.hpp"
 #include "tests/station/fake_robot.hpp"
@@ -91,6 +92,39 @@ TEST_F(FindingsTest, ARepeatIsAcknowledgedAgainAndListedOnce) {
   find(1);
   EXPECT_TRUE(acknowledged(find(1)));
   EXPECT_EQ(listed(), 1u);
+}
+
+TEST_F(FindingsTest, AStationOfARobotsNameDoesNotEndTheSessionOfTheRobot) {
+  const std::uint32_t piece = find(1);
+  ASSERT_TRUE(acknowledged(piece));
+  constexpr Id kOther{7, 7};
+  const auto wire = network_.join(77, "other");
+  auto presence = wire::Writer<radio::Presence>::make(*wire, wire::topics::kPresence).value();
+  auto bulk = wire::Writer<radio::BulkPiece>::make(*wire, wire::topics::kBulk).value();
+  radio::Presence station;
+  station.kind(radio::AGENT_STATION);
+  station.name("r1");
+  station.id(kOther);
+  station.protocol(1);
+  (void)presence.write(station);
+  run_for(1s);
+  findings::Finding mark = found(2);
+  mark.key.owner = kOther;
+  mark.data = findings::encode_mark();
+  findings::FindingPiece marks{"r1", 1, 0, {mark}};
+  marks.owner = kOther;
+  radio::BulkPiece sent;
+  sent.robot("r1");
+  sent.session(8);
+  sent.id(1);
+  sent.kind(static_cast<std::uint8_t>(transfer::Kind::findings));
+  sent.data(findings::encode(marks));
+  (void)bulk.write(sent);
+  run_for(5s);
+  EXPECT_EQ(listed(), 1U);
+  ASSERT_FALSE(robot_.piece_acks().back().receipts().empty());
+  EXPECT_EQ(robot_.piece_acks().back().receipts().front().session(), 3U);
+  EXPECT_TRUE(acknowledged(piece));
 }
 
 TEST_F(FindingsTest, ThatChangeAreListedWithTheirNewestContentAndNotifiedOnce) {
