@@ -149,6 +149,17 @@ check_sharing() {
     grep -vE '^tests/live/process.cpp:.*temp_directory_path|domain(",)? [="]+ ?(23[3-9]|[3-9][0-9]{2})\b' | sed 's/$/   <- shared with other tests/'
 }
 
+# --- listed: a test that no CMakeLists.txt names is never built ------------------------------------------------
+check_listed() {
+  { files -name CMakeLists.txt | grep '^tests/' | xargs -r awk '
+      { folder = FILENAME; sub(/[^\/]*$/, "", folder); gsub(/[()"]/, " ") }
+      { for (i = 1; i <= NF; ++i) if ($i ~ /_test\.cpp$/) { sub(/^\$\{PROJECT_SOURCE_DIR\}\//, "/", $i)
+                                                          print "named", $i ~ /^\// ? substr($i, 2) : folder $i } }'
+    files -name '*_test.cpp' | grep '^tests/' | sed 's/^/there /'; } |
+    awk '$1 == "named" { named[$2] = 1 }
+         $1 == "there" && !named[$2] { print $2 ": no CMakeLists.txt names it, so it is not built" }'
+}
+
 # --- citation: the version in CITATION.cff is the project's ------------------------------------------------
 check_citation() {
   local cited project
@@ -221,7 +232,7 @@ if [ "${1:-}" = --count ]; then
   exit
 fi
 checks=("$@")
-[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation spdx sleeps sharing qml format shell)
+[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation spdx sleeps sharing listed qml format shell)
 status=0
 for check in "${checks[@]}"; do
   declare -F "check_$check" > /dev/null || { echo "lint: no check '$check'" >&2; exit 2; }

@@ -54,6 +54,12 @@ for line in 'std::filesystem::temp_directory_path()' 'testing::TempDir()' '::mkd
   put "tests/shared$((++shared)).cpp" "\\n$line\\n"
   expect sharing "tests/shared$shared.cpp:2:"
 done
+put tests/l/CMakeLists.txt 'adit_test(l SOURCES\n  one_test.cpp\n  m/two_test.cpp)\n'
+put tests/l/one_test.cpp '\n'
+put tests/l/m/two_test.cpp '\n'
+expect listed ""
+put tests/l/three_test.cpp '\n'
+expect listed 'tests/l/three_test.cpp: no CMakeLists.txt names it'
 put basestation/gui/qml/A.qml '// SPDX-License-Identifier: Apache-2.0\nItem {\n  function onB(c) { d.e(c) }\n}\n'
 expect qml ""
 put basestation/gui/qml/A.qml "$(printf 'x\\n%.0s' $(seq 201))"

@@ -144,7 +144,7 @@ TEST_F(StairsGoTest, RefusesWhatDoesNotClimbAndWhatIsNoStaircase) {
   const Outcome wheels = execute("stairs go r3 1 up");
   EXPECT_EQ(wheels.exit_code, 1);
   EXPECT_THAT(wheels.error, HasSubstr("r3 climbs no stairs"));
-  EXPECT_THAT(wheels.error, HasSubstr("[goal_over_stairs]"));
+  EXPECT_EQ(wheels.json["reason"], "goal_over_stairs");
   EXPECT_THAT(execute("stairs go r2 7 up").error, HasSubstr("no staircase of that ID"));
   EXPECT_THAT(execute("stairs go r9 1 up").error, HasSubstr("r9"));
   EXPECT_EQ(execute("stairs go r2 1 sideways").exit_code, kExitUsage);
