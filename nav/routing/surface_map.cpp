@@ -77,7 +77,7 @@ void SurfaceMap::lay_stairs(const Staircase& stairs) {
     const auto z = static_cast<float>(tread_height(stairs, place.along));
     const int index = surface_layer(ix, iy, z);
     GroundCell& cell = tile(index).cells[cell_in_tile(ix, iy)];
-    if (cell.known && (cell.sure || cell.blocked)) return;
+    if (cell.known && (cell.blocked || (cell.sure && !cell.guessed()))) return;
     cell.z = z;
     cell.known = cell.measured = cell.sure = cell.of_stairs = true;
     cell.range = kRangeOnFoot;
@@ -202,7 +202,7 @@ int SurfaceMap::surface_layer(int ix, int iy, float z) {
   for (int i = last_first_; i >= 0; i = tile(i).next) {
     const Tile& t = tile(i);
     if (same(t)) return last_ = i;
-    if (t.cells[c].known) continue;
+    if (t.cells[c].known && (t.cells[c].blocked || !t.cells[c].guessed())) continue;
     const float step = step_around(t, ix & 15, iy & 15, z);
     if (step > same_) continue;
     // A continuous neighbour wins over any floor that is merely near.
@@ -346,7 +346,8 @@ bool SurfaceMap::update_height(GroundCell& cell, float z, float range, bool meas
   }
   cell.known = true;
   cell.measured = measured;
-  cell.range = static_cast<std::uint8_t>(std::min(255.0f, std::ceil(combined / kRangeUnit)));
+  cell.range =
+      static_cast<std::uint8_t>(std::min(GroundCell::kNoRange - 1.0f, std::ceil(combined / kRangeUnit)));
   cell.sure = cell.sure || range <= kSureRange;
   return cell.sure != was_sure || cell.measured != was_measured;
 }

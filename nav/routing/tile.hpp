@@ -29,11 +29,15 @@ struct GroundCell {
   bool sure : 1 {false};  ///< Height or obstacle was seen from near, which proves a step.
   /// The height is that of a known staircase: it goes with it, and no scan from near measured it.
   bool of_stairs : 1 {false};
-  /// How exactly the height was measured: as by one scan from so far away, kRangeUnit.
-  std::uint8_t range{255};
+  /// How exactly the height was measured: as by one scan from so far away, kRangeUnit; kNoRange: not at all.
+  std::uint8_t range{kNoRange};
   /// Position of the obstacle relative to the cell's centre, kAsideUnit.
   std::int8_t aside_x{0}, aside_y{0};
   std::uint16_t scan{0};  ///< The last scan with a return from the obstacle.
+
+  static constexpr std::uint8_t kNoRange = 255;
+  /// The height is that of the ground before an obstacle, of which this cell had a return.
+  bool guessed() const { return known && !of_stairs && range == kNoRange; }
 };
 inline constexpr float kObstacleHeightUnit = 0.02f;  ///< m
 /// Obstacle height at the edge of missing ground, kObstacleHeightUnit; the depth is unknown.

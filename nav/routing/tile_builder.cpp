@@ -64,7 +64,7 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       // The height of the ground under an obstacle is a guess and makes no step.
       const std::size_t at = in_window(x, y);
       known_[at] = true;
-      seen_height_[at] = cell.blocked ? kNan : cell.z;
+      seen_height_[at] = cell.blocked || cell.guessed() ? kNan : cell.z;
       height_[at] = said(cell) ? seen_height_[at] : kNan;
       sure_[at] = cell.sure;
       all_sure_ = all_sure_ && cell.sure;

@@ -57,7 +57,9 @@ class TileBuilder {
   /// In kObstacleHeightUnit: higher obstacles are walls or edges, also when seen from afar.
   static constexpr std::uint8_t kTall = 18;
   /// Whether a height proves anything: interpolated heights seen from afar do not.
-  static bool said(const GroundCell& cell) { return cell.known && (cell.sure || cell.measured); }
+  static bool said(const GroundCell& cell) {
+    return cell.known && !cell.guessed() && (cell.sure || cell.measured);
+  }
   static constexpr int kWindow = kTileSide + 2 * kTileHalo;
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
   void gather(const SurfaceMap& map, const Tile& tile);

@@ -41,6 +41,25 @@ TEST(RouteSteps, AStepThatWasOnlySeenFromAfarProvesNothing) {
   }
 }
 
+// A riser that is seen over a corner passes for an obstacle on the ground before it.
+TEST(RouteSteps, TheGroundBelowAnObstacleThatWasSeenOnceIsAGuess) {
+  Platform legged = wheeled();
+  legged.step = 0.22;
+  legged.stairs = true;
+  const RouteParams params;
+  SurfaceMap map(params, ScanProfile::most_wrong(legged));
+  TileBuilder builder(legged, params);
+  map.begin_scan(0, 0);
+  for (int iy = -6; iy < 6; ++iy)
+    map.see_obstacle(1.45f, (static_cast<float>(iy) + 0.5f) * 0.1f, 0.0f, 0.75f);
+  map.begin_scan(0.2, 0);
+  for (int ix = 0; ix < 30; ++ix)
+    for (int iy = -6; iy < 6; ++iy)
+      map.see_free(ix, iy, static_cast<float>(0.16 * std::clamp(ix / 3, 0, 8)), 0.0f,
+                   SurfaceMap::Seen::measured);
+  EXPECT_TRUE(RouteLine(map, builder).line({0.2, 0, 0}, {2.8, 0, 1.28}).passable);
+}
+
 /// A line of 2 m over an edge that was seen from afar.
 LineCost over_edge(double height, SurfaceMap::Seen seen) {
   const RouteParams params;
