@@ -186,7 +186,6 @@ class Witness {
       if (!event.ended) begun_ = steady_ms();
     };
     connection_.notices();
-    connection_.watch();
     thread_ = std::jthread([this](const std::stop_token& stop) {
       while (!stop.stop_requested() && connection_.wait(50)) {
       }
@@ -224,8 +223,12 @@ Results socket_results() {
     QTest::qWait(120);
     const int rows = control.log()->rowCount();
     const double begun = steady_ms();
-    bench.server_->notify(
-        {.id = 1000U + static_cast<unsigned>(i), .code = "found", .text = "event", .mine = true});
+    station::Notice notice;
+    notice.code = "found";
+    notice.text = "event";
+    notice.id = 1000U + static_cast<unsigned>(i);
+    notice.mine = true;
+    bench.server_->notify(notice);
     if (QTest::qWaitFor([&] { return control.log()->rowCount() > rows; }, kLimitMs) && frames.next())
       waits.push_back(steady_ms() - begun);
   }
