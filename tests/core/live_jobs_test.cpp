@@ -106,20 +106,21 @@ TEST_F(LiveJobs, AWorkersToo) {
 }
 
 TEST_F(LiveJobs, ADeadlineCompletesAJobThatWaitsAndOneThatRuns) {
-  std::promise<bool> stopped;
+  // It outlives this test: the job's thread may still be in set_value().
+  const auto stopped = std::make_shared<std::promise<bool>>();
   std::atomic<int> completions{0};
   strand->compute(
       {.name = "slow", .deadline = 1s},  // Long enough that it has begun also on a machine with other work.
-      [&](const std::stop_token& stop) {
+      [stopped](const std::stop_token& stop) {
         while (!stop.stop_requested()) std::this_thread::yield();
-        stopped.set_value(true);
+        stopped->set_value(true);
       },
       [&](const Result<void>& r) {
         ++completions;
         note(1, r);
       });
   submit(2, {.deadline = 1ms});
-  EXPECT_TRUE(stopped.get_future().get());
+  EXPECT_TRUE(stopped->get_future().get());
   const auto seen = wait_for(2);
   EXPECT_THAT(seen, testing::UnorderedElementsAre("1 no_answer", "2 no_answer"));
   submit(3, {});
