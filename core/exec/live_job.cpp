@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/exec/live_job.hpp"
 
+#include <utility>
+
 namespace adit {
 
 std::int64_t steady_ns() {
@@ -19,12 +21,14 @@ LiveJob::LiveJob(JobSpec the_spec, JobWork work, JobDone done, std::shared_ptr<I
 void LiveJob::watch_deadline(Executor& home_strand) {
   if (spec.deadline <= Duration{}) return;
   due_ns_ = steady_ns() + spec.deadline.count();
-  deadline_ = home_strand.after(spec.deadline, [weak = weak_from_this()] {
+  Timer deadline = home_strand.after(spec.deadline, [weak = weak_from_this()] {
     const auto job = weak.lock();
     if (!job || job->settled()) return;
     job->request_stop();
     job->settle(Error{Reason::no_answer, job->spec.name + ": not done by its deadline"});
   });
+  const std::lock_guard lock(deadline_mutex_);
+  deadline_ = std::move(deadline);
 }
 
 void LiveJob::run() {
@@ -49,7 +53,10 @@ void LiveJob::run() {
 bool LiveJob::settle(Result<void> result) {
   if (settled_.exchange(true, std::memory_order_acq_rel)) return false;
   home_->post_control([self = shared_from_this(), result = std::move(result)]() mutable {
-    self->deadline_.cancel();
+    {
+      const std::lock_guard lock(self->deadline_mutex_);
+      self->deadline_.cancel();
+    }
     const JobDone done = std::move(self->done_);
     self->done_ = nullptr;
     done(std::move(result));

@@ -2,6 +2,7 @@
 #pragma once
 // One job of a live strand. Private to core/exec.
 #include <atomic>
+#include <mutex>
 #include <string>
 
 #include "core/exec/executor.hpp"
@@ -41,6 +42,8 @@ class LiveJob final : public JobControl, public std::enable_shared_from_this<Liv
   std::shared_ptr<Inbox> home_;
   FailureHandler on_failure_;
   std::stop_source stop_{};
+  /// Of deadline_: a job that another thread submits may be past its deadline before submit() returns.
+  std::mutex deadline_mutex_{};
   Timer deadline_{};  ///< Created before the job is queued; cancelled in the completion on the home strand.
   std::int64_t due_ns_{};  ///< End of the deadline on the steady clock; 0: none.
   std::atomic<bool> settled_{false};
