@@ -9,6 +9,7 @@
 #include "basestation/model/delta.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/model/json_reader.hpp"
+#include "basestation/model/photo_bytes.hpp"
 
 namespace adit::station::client {
 
@@ -38,8 +39,7 @@ std::int64_t Connection::teleop(const std::string& robot) {
 }
 
 std::int64_t Connection::photo(const std::string& id, findings::PhotoPart part) {
-  const char* which = part == findings::PhotoPart::picture ? "picture" : "thumbnail";
-  send(line_of({{"id", next_}, {"photo", id}, {"part", which}}));
+  send(line_of({{"id", next_}, {"photo", id}, {"part", word_of(part)}}));
   return next_++;
 }
 

@@ -250,17 +250,16 @@ void Server::ask_map(std::uint64_t number, Client& client, const json& wanted) {
 
 void Server::ask_photo(std::uint64_t number, Client& client, std::int64_t id, const std::string& photo,
                        const std::string& part) {
-  using findings::PhotoPart;
   const auto content = photo_id_from(photo);
-  if (!content || (part != "picture" && part != "thumbnail"))
+  const auto which = photo_part_from(part);
+  if (!content || !which)
     return answer(client, {{"wrong", "a photo has sixteen hexadecimal digits, and a part"}});
   client.open[id] = std::make_shared<std::uint64_t>(0);
   const auto reply = [this, number, id](const json& outcome) {
     hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", outcome}}});
   };
-  const PhotoPart which = part == "picture" ? PhotoPart::picture : PhotoPart::thumbnail;
   const bool posted = strand_->post([this, reply, content, which] {
-    const store::Bytes* bytes = station_->photo(*content, which);
+    const store::Bytes* bytes = station_->photo(*content, *which);
     reply(json_of(bytes ? Outcome{.json = photo_json(*bytes)}
                         : failed_outcome(kExitRefused, {Reason::cannot_read, "the photo is not here"})));
   });

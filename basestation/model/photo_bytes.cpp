@@ -8,6 +8,9 @@
 #include "core/findings/photo.hpp"
 
 namespace adit::station {
+
+using findings::PhotoPart;
+
 namespace {
 
 constexpr std::string_view kBase64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -45,6 +48,14 @@ Result<store::Bytes> bytes_of_base64(std::string_view text) {
   }
   bytes.resize(bytes.size() - padding);
   return bytes;
+}
+
+std::string_view word_of(PhotoPart part) { return part == PhotoPart::picture ? "picture" : "thumbnail"; }
+
+std::optional<PhotoPart> photo_part_from(std::string_view word) {
+  for (const PhotoPart part : {PhotoPart::thumbnail, PhotoPart::picture})
+    if (word == word_of(part)) return part;
+  return std::nullopt;
 }
 
 std::optional<std::uint64_t> photo_id_from(std::string_view text) {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "basestation/model/outcome.hpp"
+#include "core/findings/photo_file.hpp"
 #include "core/result/result.hpp"
 #include "core/store/disk.hpp"
 
@@ -18,6 +19,10 @@ namespace adit::station {
 std::string base64_of(std::span<const std::uint8_t> bytes);
 /// Error: malformed (another character, padding or length than base64_of() writes).
 Result<store::Bytes> bytes_of_base64(std::string_view text);
+
+/// The word for a part of a photo in requests, and back; nothing: it is none.
+std::string_view word_of(findings::PhotoPart part);
+std::optional<findings::PhotoPart> photo_part_from(std::string_view word);
 
 /// Reads FoundPhoto::id; nothing: it is none.
 std::optional<std::uint64_t> photo_id_from(std::string_view text);

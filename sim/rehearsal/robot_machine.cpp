@@ -142,13 +142,18 @@ Result<void> RobotMachine::find(findings::Finding finding) {
   return agent_->program->find(std::move(finding));
 }
 
+std::unique_ptr<RobotMachine::Program> RobotMachine::start_program(const std::string& name) {
+  auto program = std::make_unique<Program>();
+  const std::string machine = spec_.id + "/" + name;
+  program->runtime = stage_.scheduler.machine(machine, clock_offset_);
+  program->strand = program->runtime->strand(name);
+  program->wire = stage_.network.join(domain_, machine);
+  return program;
+}
+
 Result<void> RobotMachine::report(const std::string& kind, int kilobytes) {
   if (!reporter_) {
-    auto program = std::make_unique<Program>();
-    const std::string machine = spec_.id + "/reporter";
-    program->runtime = stage_.scheduler.machine(machine, clock_offset_);
-    program->strand = program->runtime->strand("reporter");
-    program->wire = stage_.network.join(domain_, machine);
+    auto program = start_program("reporter");
     auto writer = wire::Writer<visualization_msgs::msg::Marker>::make(*program->wire, wire::topics::kReports);
     if (!writer) return writer.error();
     program->reports = std::move(*writer);
@@ -173,11 +178,7 @@ Result<void> RobotMachine::report(const std::string& kind, int kilobytes) {
 }
 
 Result<void> RobotMachine::steer(const Twist2& velocity, Duration duration) {
-  auto program = std::make_unique<Program>();
-  const std::string machine = spec_.id + "/program";
-  program->runtime = stage_.scheduler.machine(machine, clock_offset_);
-  program->strand = program->runtime->strand("program");
-  program->wire = stage_.network.join(domain_, machine);
+  auto program = start_program("program");
   auto writer = wire::Writer<geometry_msgs::msg::Twist>::make(*program->wire, wire::topics::kExternalCmdVel);
   if (!writer) return writer.error();
   program->velocity = std::move(*writer);

@@ -57,6 +57,8 @@ class RobotMachine {
   struct Agent;
   struct Program;
   Result<void> start_agent();
+  /// Starts a program on the robot, with a wire in the robot's domain.
+  std::unique_ptr<Program> start_program(const std::string& name);
 
   Stage& stage_;
   std::size_t index_;

@@ -6,13 +6,12 @@
 #include <utility>
 
 #include "basestation/gui/bridge/row_model.hpp"
+#include "basestation/model/photo_bytes.hpp"
 
 namespace adit::gui {
 namespace {
 
 using findings::PhotoPart;
-
-constexpr auto kPictureWord = "picture", kThumbnailWord = "thumbnail";
 
 /// A picture without a pixel that is seen. QML would write a warning for an image that failed.
 QImage no_picture() {
@@ -55,13 +54,14 @@ class PhotoResponse : public QQuickImageResponse {
 
 QString photo_source(const std::string& id, PhotoPart part, int attempt) {
   if (id.empty()) return {};
-  const char* which = part == PhotoPart::picture ? kPictureWord : kThumbnailWord;
-  return QString("image://%1/%2/%3/%4").arg(PhotoProvider::kName, text_of(id), which).arg(attempt);
+  const std::string which(station::word_of(part));
+  return QString("image://%1/%2/%3/%4").arg(PhotoProvider::kName, text_of(id), text_of(which)).arg(attempt);
 }
 
 QQuickImageResponse* PhotoProvider::requestImageResponse(const QString& id, const QSize&) {
-  const PhotoPart part = id.section('/', 1, 1) == kPictureWord ? PhotoPart::picture : PhotoPart::thumbnail;
-  return new PhotoResponse(loader_, std::make_shared<PhotoJob>(id.section('/', 0, 0).toStdString(), part));
+  const auto part = station::photo_part_from(id.section('/', 1, 1).toStdString());
+  return new PhotoResponse(loader_, std::make_shared<PhotoJob>(id.section('/', 0, 0).toStdString(),
+                                                               part.value_or(PhotoPart::thumbnail)));
 }
 
 }  // namespace adit::gui
