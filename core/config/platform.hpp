@@ -52,7 +52,8 @@ struct Platform {
   double lidar_highest{15};  ///< Elevation of the first lidar's highest beam, degrees, [0, 89].
   /// Key `sensors:`; empty: one level lidar at lidar_height. See all_lidars().
   std::vector<LidarConfig> lidars{};
-  std::optional<ImuConfig> imu{};  ///< Key `sensors:`; none: roll and pitch come from the odometry.
+  std::optional<ImuConfig> imu{};       ///< Key `sensors:`; none: roll and pitch come from the odometry.
+  std::vector<CameraConfig> cameras{};  ///< Key `sensors:`; none: no pictures.
   /// Roll or pitch at which it may tip over, rad, (0, 1.5]; 0: from max_slope, see Traversability.
   double max_tilt{0.0};
   bool stairs{false};

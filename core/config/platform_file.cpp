@@ -112,6 +112,7 @@ void read_platform_sensors(const Node& sensors, Platform& p) {
   if (!sensors.present()) return;
   Sensors read = read_sensors(sensors, p.lidar(), p.flies());
   p.lidars = std::move(read.lidars);
+  p.cameras = std::move(read.cameras);
   p.imu = std::move(read.imu);
   if (p.lidars.empty()) return;
   p.lidar_height = p.lidars.front().mounting.z;

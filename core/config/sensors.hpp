@@ -52,11 +52,26 @@ struct ImuConfig {
   double rate{100};  ///< Sample rate, 1/s, [10, 2000].
 };
 
+/// A camera of a platform: mounting, topics and view. The optical axis is the x axis of the mounting, z
+/// points up in the picture.
+struct CameraConfig {
+  std::string name{"front"};  ///< Operators use it; up to 16 characters, other than those of other cameras.
+  Mounting mounting{};
+  /// Its driver's pictures are on TOPIC/image_raw and TOPIC/image_raw/compressed, without the leading slash.
+  std::string topic{"camera"};
+  double field_of_view{1.2};  ///< Horizontal, of a picture without distortion, rad, [0.2, 2.6].
+  double rate{15};            ///< Simulated camera: pictures a second, [1, 60].
+  int width{640};             ///< Simulated camera: pixels, [16, 1920].
+  int height{480};            ///< Simulated camera: pixels, [16, 1080].
+  bool compressed{true};      ///< Simulated camera: sends JPEG; else image_raw.
+};
+
 /// The sensors of one robot that perception uses.
 struct Sensors {
-  static constexpr std::size_t kMaxLidars = 4;
+  static constexpr std::size_t kMaxLidars = 4, kMaxCameras = 8;
   std::vector<LidarConfig> lidars{};
   std::optional<ImuConfig> imu{};
+  std::vector<CameraConfig> cameras{};
 };
 
 }  // namespace adit

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/command/words.hpp"
+
 namespace adit::config {
 namespace {
 
@@ -52,6 +54,37 @@ ImuConfig read_imu(const Node& node, bool flies) {
   return imu;
 }
 
+CameraConfig read_camera(const Node& node, bool flies) {
+  CameraConfig camera;
+  camera.name = node.text("name", camera.name);
+  if (!command::valid_name(camera.name) || camera.name.size() > 16)
+    node.fail(Reason::out_of_range, "expected a name of up to 16 letters, digits, - and _");
+  camera.mounting = read_mounting(node, flies);
+  camera.topic = node.text("topic", camera.topic);
+  if (camera.topic.empty()) node.fail(Reason::out_of_range, "expected a topic that is not empty");
+  camera.field_of_view = node.number("field_of_view", within(0.2, 2.6), camera.field_of_view);
+  camera.rate = node.number("rate", within(1, 60), camera.rate);
+  camera.width = static_cast<int>(node.integer("width", 16, 1920, camera.width));
+  camera.height = static_cast<int>(node.integer("height", 16, 1080, camera.height));
+  camera.compressed = node.choice("sends", {"raw", "jpeg"}, camera.compressed ? 1 : 0) == 1;
+  return camera;
+}
+
+std::vector<CameraConfig> read_cameras(const Node& cameras, bool flies) {
+  std::vector<CameraConfig> out;
+  const std::vector<Node> each = cameras.is_list() ? cameras.as_list() : std::vector<Node>{cameras};
+  if (each.empty() || each.size() > Sensors::kMaxCameras)
+    cameras.fail(Reason::out_of_range, "expected 1 to 8 cameras");
+  for (const Node& node : each) {
+    CameraConfig read = read_camera(node, flies);
+    for (const CameraConfig& other : out)
+      if (other.topic == read.topic || other.name == read.name)
+        node.fail(Reason::out_of_range, "expected a topic and a name that no other camera has");
+    if (out.size() < Sensors::kMaxCameras) out.push_back(std::move(read));
+  }
+  return out;
+}
+
 }  // namespace
 
 Sensors read_sensors(const Node& sensors, const LidarConfig& usual, bool flies) {
@@ -70,6 +103,8 @@ Sensors read_sensors(const Node& sensors, const LidarConfig& usual, bool flies) 
     }
   }
   if (const Node imu = sensors.child_if("imu"); imu.present()) out.imu = read_imu(imu, flies);
+  if (const Node camera = sensors.child_if("camera"); camera.present())
+    out.cameras = read_cameras(camera, flies);
   return out;
 }
 

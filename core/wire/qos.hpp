@@ -35,8 +35,8 @@ inline Qos qos_of(QosClass qos) {
       return {true, false, 1000ms, 5, false, true};
     case QosClass::pieces:  // Neither repaired nor paced by the wire: core/transfer does both.
       return {false, false, 0ms, 5, false};
-    case QosClass::video:
-      return {false, false, 0ms, 6, true};
+    case QosClass::video:  // Paced by its sender, which never queues more than one picture.
+      return {false, false, 0ms, 6, false};
   }
   return {};
 }

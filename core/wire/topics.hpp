@@ -18,6 +18,8 @@ class Health;
 class LinkReport;
 class BulkPiece;
 class BulkAck;
+class CameraPiece;
+class CameraViews;
 class TeamBeacon;
 }  // namespace adit::radio
 namespace geometry_msgs::msg {
@@ -32,6 +34,8 @@ class PointCloud2;
 class LaserScan;
 class Imu;
 class BatteryState;
+class Image;
+class CompressedImage;
 }  // namespace sensor_msgs::msg
 namespace tf2_msgs::msg {
 class TFMessage;
@@ -86,6 +90,12 @@ inline constexpr Topic<radio::BulkAck> kBulkAck{
 /// station hears sends there.
 inline constexpr const char* kCarryPartition = "carry";
 
+/// Pictures of cameras, in pieces that decode alone, and what stations look at and got of them.
+inline constexpr Topic<radio::CameraPiece> kCamera{
+    {"adit/camera", "adit::radio::v1::CameraPiece", QosClass::video, 32, kUnkeyed, 1400}};
+inline constexpr Topic<radio::CameraViews> kCameraViews{
+    {"adit/camera_views", "adit::radio::v1::CameraViews", QosClass::pieces, 1, kUnkeyed, 2800}};
+
 /// Robots to robots: position, motion, and their parts in what several robots do together.
 inline constexpr Topic<radio::TeamBeacon> kTeam{
     {"adit/team", "adit::radio::v1::TeamBeacon", QosClass::state, 1, kKeyed, 1024}};
@@ -129,5 +139,12 @@ inline constexpr Topic<vision_msgs::msg::Detection3DArray> kDetections{
 /// photo that is used, so that a photo that is too large costs its finding only the photo.
 inline constexpr Topic<visualization_msgs::msg::Marker> kReports{
     {"rt/reports", "visualization_msgs::msg::dds_::Marker_", QosClass::bulk, 8, kUnkeyed, 24 << 20}};
+
+/// Pictures of a camera as its driver sends them; see CameraConfig for the names.
+inline constexpr Topic<sensor_msgs::msg::Image> kImage{
+    {"rt/camera/image_raw", "sensor_msgs::msg::dds_::Image_", QosClass::sensor, 1, kUnkeyed, 32 << 20}};
+inline constexpr Topic<sensor_msgs::msg::CompressedImage> kCompressedImage{
+    {"rt/camera/image_raw/compressed", "sensor_msgs::msg::dds_::CompressedImage_", QosClass::sensor, 1,
+     kUnkeyed, 16 << 20}};
 
 }  // namespace adit::wire::topics

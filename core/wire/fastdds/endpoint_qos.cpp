@@ -43,13 +43,11 @@ dds::DataWriterQos dds_writer_qos(const TopicInfo& topic, bool on_link) {
   if (qos.reliable) out.reliable_writer_qos().times.heartbeatPeriod = duration(qos.heartbeat);
   // By default the caller's thread sends, which has the lowest latency. Large samples that can be deferred go
   // through a flow controller, so that they do not hold that thread up.
-  const bool wait = topic.qos == QosClass::bulk || topic.qos == QosClass::video;
+  const bool wait = topic.qos == QosClass::bulk;
   out.publish_mode().kind = wait ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
   // Its readers would otherwise acknowledge each fragment.
   if (topic.qos == QosClass::bulk) out.reliable_writer_qos().disable_heartbeat_piggyback = true;
-  if (on_link && wait) {
-    out.publish_mode().flow_controller_name = topic.qos == QosClass::bulk ? kBulkFlow : kVideoFlow;
-  }
+  if (on_link && wait) out.publish_mode().flow_controller_name = kBulkFlow;
   return out;
 }
 

@@ -7,12 +7,11 @@
 
 namespace adit::wire {
 
-/// Names of the flow controllers of a participant with a link: for the classes `bulk` and `video`.
+/// Name of the flow controller of a participant with a link, for the class `bulk`.
 inline constexpr const char* kBulkFlow = "adit_bulk";
-inline constexpr const char* kVideoFlow = "adit_video";
 
 /// Returns a topic's QoS class in terms of Fast DDS, with all resource limits. `on_link`: the participant has
-/// the flow controllers of a link.
+/// the flow controller of a link.
 eprosima::fastdds::dds::DataWriterQos dds_writer_qos(const TopicInfo& topic, bool on_link);
 eprosima::fastdds::dds::DataReaderQos dds_reader_qos(const TopicInfo& topic);
 

@@ -134,7 +134,6 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
         std::min(udp->maxMessageSize, std::max(frame, kAnnouncement + kAddress * (addresses - 1)));
     const Budget budget;
     add_flow(kBulkFlow, budget.share[5], *params.link, qos);
-    add_flow(kVideoFlow, budget.share[6], *params.link, qos);
   }
   udp->maxInitialPeersRange = kParticipantsPerHost;
   qos.transport().user_transports.push_back(
