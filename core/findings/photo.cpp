@@ -15,7 +15,6 @@ namespace adit::findings {
 namespace {
 
 constexpr long kDecoderMemory = 64L << 20;  // Bytes.
-constexpr std::uint32_t kThumbnailSide = 128;
 
 /// The library's handler of errors: it jumps out of the call instead of ending the process.
 struct JpegErrors {
@@ -95,7 +94,7 @@ Decoded decode_into(PhotoPixels& pixels, std::span<const std::uint8_t> jpeg, con
   return outcome;
 }
 
-Decoded read_header(std::span<const std::uint8_t> jpeg) {
+Decoded read_header(std::span<const std::uint8_t> jpeg, std::uint32_t most) {
   jpeg_decompress_struct decoder{};
   JpegErrors errors{};
   decoder.err = quiet_errors(errors);
@@ -104,7 +103,9 @@ Decoded read_header(std::span<const std::uint8_t> jpeg) {
     return Decoded::damaged;
   }
   jpeg_create_decompress(&decoder);
-  const Decoded outcome = begin_decoder(decoder, jpeg);
+  Decoded outcome = begin_decoder(decoder, jpeg);
+  if (outcome == Decoded::good && std::max(decoder.image_width, decoder.image_height) > most)
+    outcome = Decoded::too_large;
   jpeg_destroy_decompress(&decoder);
   return outcome;
 }
@@ -221,8 +222,8 @@ Result<void> check_photo_size(std::size_t bytes) {
                                     std::to_string(Photo::kMaxInput / 1024) + " are read"};
 }
 
-Result<void> check_photo_header(std::span<const std::uint8_t> jpeg) {
-  const Decoded outcome = is_jpeg(jpeg) ? read_header(jpeg) : Decoded::damaged;
+Result<void> check_photo_header(std::span<const std::uint8_t> jpeg, std::uint32_t most) {
+  const Decoded outcome = is_jpeg(jpeg) ? read_header(jpeg, most) : Decoded::damaged;
   if (outcome != Decoded::good) return refusal_of(outcome, jpeg.size());
   return {};
 }
@@ -245,7 +246,7 @@ Result<Photo> make_photo(std::span<const std::uint8_t> jpeg, const std::stop_tok
   constexpr std::array kSmall{55, 40, 25};
   photo.picture = jpeg.size() <= Photo::kMaxBytes ? store::Bytes(jpeg.begin(), jpeg.end())
                                                   : compressed(pixels, Photo::kSide, Photo::kMaxBytes, kGood);
-  photo.thumbnail = compressed(std::move(pixels), kThumbnailSide, Photo::kMaxThumbnail, kSmall);
+  photo.thumbnail = compressed(std::move(pixels), Photo::kThumbnailSide, Photo::kMaxThumbnail, kSmall);
   if (photo.picture.empty() || photo.thumbnail.empty())
     return Error{Reason::internal, "a photo could not be compressed"};
   photo.hash = photo_hash(photo.picture);

@@ -18,6 +18,7 @@ struct Photo {
   static constexpr std::uint32_t kMaxSide = 10'000;              ///< Of the same, pixels.
   static constexpr std::uint64_t kMaxPixels = 40'000'000;        ///< Of the same.
   static constexpr int kMaxScans = 32;                           ///< Of a progressive JPEG; cameras write 10.
+  static constexpr std::uint32_t kThumbnailSide = 128;           ///< Longer side of a thumbnail, pixels.
   static constexpr std::uint32_t kSide = 1600;  ///< Longer side of a picture that is recompressed, pixels.
 
   store::Bytes picture{};    ///< JPEG, at most kMaxBytes.
@@ -52,8 +53,8 @@ Result<Photo> make_photo(std::span<const std::uint8_t> jpeg, const std::stop_tok
 Result<PhotoPixels> decode_photo(std::span<const std::uint8_t> jpeg, const std::stop_token& stop = {});
 
 /// Checks the header of a JPEG alone: that it is one, and within the bounds of Photo. It costs little; the
-/// rest of the JPEG may be damaged. Errors: as of make_photo().
-Result<void> check_photo_header(std::span<const std::uint8_t> jpeg);
+/// rest of the JPEG may be damaged. `most`: for its longer side, pixels. Errors: as of make_photo().
+Result<void> check_photo_header(std::span<const std::uint8_t> jpeg, std::uint32_t most = Photo::kMaxSide);
 
 /// Hash of a picture's bytes, FNV-1a; it detects damage, not forgery.
 std::uint64_t photo_hash(std::span<const std::uint8_t> bytes);

@@ -197,7 +197,8 @@ Result<void> PhotoStore::add(const PhotoPiece& piece, const PhotoRef& ref, std::
 Result<void> PhotoStore::finish(Entry& entry, PhotoPart part) {
   BlockBuffer& buffer = part == PhotoPart::picture ? entry.photo.picture : entry.photo.thumbnail;
   if (!buffer.complete()) return {};
-  Result<void> good = check_photo_header(buffer.bytes());
+  Result<void> good = check_photo_header(
+      buffer.bytes(), part == PhotoPart::picture ? Photo::kMaxSide : Photo::kThumbnailSide);
   if (good && part == PhotoPart::picture && photo_hash(buffer.bytes()) != entry.photo.ref.content)
     good = refused_photo("its bytes have another hash");
   if (good) return {};

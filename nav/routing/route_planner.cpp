@@ -179,32 +179,34 @@ std::optional<Staircase> RoutePlanner::closed_stairs(const Eigen::Vector3d& from
   struct Reached {
     Flight flight;
     Staircase first;
-    double length;  // Up to its end, and straight on to the goal, m.
+    double travelled;  // Up to its end, m.
+    double length;     // The same, and straight on to the goal, m.
   };
   std::vector<Reached> open;
-  const auto reach = [&](const Eigen::Vector3d& place, const Staircase* first) {
+  const auto reach = [&](const Eigen::Vector3d& place, double travelled, const Staircase* first) {
     std::vector<Eigen::Vector3d> begins;
     for (const Flight& flight : left) begins.push_back(flight.begin);
     const std::vector<float> found = costs(place, begins);
     std::vector<Flight> others;
     for (std::size_t i = 0; i < left.size(); ++i) {
       const Flight& flight = left[i];
-      if (found[i] < kUnreached)
+      if (found[i] < kUnreached) {
+        const double to_end = travelled + double{found[i]} + (flight.end - flight.begin).norm();
         open.push_back(
-            {flight, first ? *first : flight.stairs,
-             double{found[i]} + (flight.end - flight.begin).norm() + (goal_place - flight.end).norm()});
-      else
+            {flight, first ? *first : flight.stairs, to_end, to_end + (goal_place - flight.end).norm()});
+      } else {
         others.push_back(flight);
+      }
     }
     left = std::move(others);
   };
-  reach(from, nullptr);
+  reach(from, 0.0, nullptr);
   for (int n = 0; n < kSearches && !open.empty(); ++n) {
     const auto next = std::ranges::min_element(open, {}, &Reached::length);
     const Reached tried = *next;
     open.erase(next);
     if (leads_on(tried.flight, goal, goal_place)) return tried.first;
-    if (!left.empty()) reach(tried.flight.end, &tried.first);
+    if (!left.empty()) reach(tried.flight.end, tried.travelled, &tried.first);
   }
   return std::nullopt;
 }

@@ -54,6 +54,15 @@ class PhotoStoreTest : public testing::Test {
   bool failing{};
 };
 
+TEST_F(PhotoStoreTest, RefusesAThumbnailThatClaimsManyPixels) {
+  Photo photo = drawn_photo();
+  photo.thumbnail = draw({.width = 136, .height = 16, .quality = 5});
+  ASSERT_LE(photo.thumbnail.size(), std::size_t{PhotoRef::kMaxThumbnail});
+  for (std::size_t i = 0; i < blocks_of(photo.thumbnail.size()); ++i)
+    EXPECT_EQ(add(photo, PhotoPart::thumbnail, i).ok(), i + 1 < blocks_of(photo.thumbnail.size())) << i;
+  EXPECT_FALSE(photos->state(photo.hash).thumbnail);
+}
+
 TEST_F(PhotoStoreTest, KeepsAPhotoOverARestart) {
   const Photo photo = drawn_photo();
   ASSERT_TRUE(photos->put(photo, 7));

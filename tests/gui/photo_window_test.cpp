@@ -140,7 +140,7 @@ TEST_F(PhotoWindow, AThumbnailIsEnlargedUntilTheWholePhotoIsHere) {
   answer_photos();
   ASSERT_TRUE(is_shown("largePhoto"));
   expect_red(colour_at("largePhoto", 0.5, 0.55));
-  EXPECT_EQ(text("photoState"), "thumbnail, enlarged; 40 % of the photo are here");
+  EXPECT_EQ(text("photoState"), "thumbnail, enlarged; 40 % of the photo is here");
   picture("finding_photo_thumbnail");
   report.findings[1].photo->here = PhotoHere::whole;
   control.add_command({.id = 1, .ended = true, .line = "finding 2 confirm", .mine = true});

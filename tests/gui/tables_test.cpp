@@ -114,7 +114,7 @@ TEST(Tables, ACaptionSaysWhatWhoWhereWhenAndWhichPart) {
   EXPECT_EQ(caption.title, "2  person");
   EXPECT_EQ(caption.text, "sits at the wall");
   EXPECT_EQ(caption.line, "found by r3   at 12.0 4.0 0.2   75 s ago   id 00000000000000a2");
-  EXPECT_EQ(caption.state, "thumbnail, enlarged; 40 % of the photo are here");
+  EXPECT_EQ(caption.state, "thumbnail, enlarged; 40 % of the photo is here");
   item.photo->here = station::PhotoHere::whole;
   item.age.reset();
   item.mark = true;
@@ -122,7 +122,7 @@ TEST(Tables, ACaptionSaysWhatWhoWhereWhenAndWhichPart) {
   EXPECT_EQ(photo_caption(item).line,
             "marked by r3   at 12.0 4.0 0.2   at an unknown time   id 00000000000000a2");
   item.photo->here = station::PhotoHere::none;
-  EXPECT_EQ(photo_caption(item).state, "its thumbnail is not here yet; 40 % of the photo are here");
+  EXPECT_EQ(photo_caption(item).state, "its thumbnail is not here yet; 40 % of the photo is here");
 }
 
 TEST(Tables, FindingsThatAreWithdrawnAreGrey) {

@@ -10,9 +10,14 @@
 namespace adit::gui {
 namespace {
 
-Result<QImage> decoded_image(const station::CommandOutcome& outcome, const std::stop_token& stop) {
+Result<QImage> decoded_image(const station::CommandOutcome& outcome, findings::PhotoPart part,
+                             const std::stop_token& stop) {
   const auto jpeg = station::photo_of(outcome);
   if (!jpeg) return jpeg.error();
+  // A thumbnail has no hash: a large one of few bytes would take a second to decode.
+  if (part == findings::PhotoPart::thumbnail)
+    if (const auto small = findings::check_photo_header(*jpeg, findings::Photo::kThumbnailSide); !small)
+      return small.error();
   const auto pixels = findings::decode_photo(*jpeg, stop);
   if (!pixels) return pixels.error();
   const auto width = static_cast<int>(pixels->width), height = static_cast<int>(pixels->height);
@@ -58,7 +63,7 @@ void PhotoLoader::ask() {
 
 void PhotoLoader::decode(const Job& job, const station::CommandOutcome& outcome) {
   pool_.start([this, job, outcome] {
-    const auto image = decoded_image(outcome, job->stop.get_token());
+    const auto image = decoded_image(outcome, job->part, job->stop.get_token());
     const QString why = image ? QString() : text_of(image.error().text).trimmed();
     emit job->done(image ? *image : QImage(), why);
     QMetaObject::invokeMethod(
@@ -68,7 +73,7 @@ void PhotoLoader::decode(const Job& job, const station::CommandOutcome& outcome)
 
 void PhotoLoader::ended(const Job& job, const QString& why) {
   --asked_;
-  if (!why.isEmpty() && !job->stop.stop_requested()) emit failed(text_of(job->id), why);
+  if (!why.isEmpty() && !job->stop.stop_requested()) emit failed(text_of(job->id), job->part, why);
   ask();
 }
 

@@ -50,7 +50,7 @@ class PhotoLoader : public QObject {
 
  signals:
   /// A part of a photo could not be shown.
-  void failed(const QString& id, const QString& why);
+  void failed(const QString& id, findings::PhotoPart part, const QString& why);
 
  private:
   using Job = std::shared_ptr<PhotoJob>;

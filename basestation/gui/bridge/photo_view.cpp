@@ -14,11 +14,12 @@ using station::PhotoHere;
 
 PhotoView::PhotoView(CommandSink& sink, const station::FoundReport& report, QObject* parent)
     : QObject(parent), report_(report), loader_(sink, this) {
-  connect(&loader_, &PhotoLoader::failed, this, [this](const QString& id, const QString& why) {
-    if (!is_open() || id != text_of(id_)) return;
-    problem_ = why;
-    emit changed();
-  });
+  connect(&loader_, &PhotoLoader::failed, this,
+          [this](const QString& id, PhotoPart part, const QString& why) {
+            if (!is_open() || id != text_of(id_) || part != shown()) return;
+            problem_ = why;
+            emit changed();
+          });
 }
 
 void PhotoView::show(int finding) {
@@ -69,9 +70,11 @@ QString PhotoView::state() const {
   return problem_.isEmpty() ? text_of(caption_.state) : "it cannot be shown: " + problem_;
 }
 
+PhotoPart PhotoView::shown() const { return whole_ ? PhotoPart::picture : PhotoPart::thumbnail; }
+
 QString PhotoView::source() const {
   if (!is_open() || !here_) return {};
-  return photo_source(id_, whole_ ? PhotoPart::picture : PhotoPart::thumbnail, attempt_);
+  return photo_source(id_, shown(), attempt_);
 }
 
 }  // namespace adit::gui

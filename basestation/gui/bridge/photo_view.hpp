@@ -51,6 +51,9 @@ class PhotoView : public QObject {
   void changed();
 
  private:
+  /// The part that is open.
+  findings::PhotoPart shown() const;
+
   const station::FoundReport& report_;
   PhotoLoader loader_;
   std::uint32_t finding_{0};  ///< Its number; 0: none is open.

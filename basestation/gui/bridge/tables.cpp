@@ -204,7 +204,7 @@ std::vector<FoundRow> found_rows(const station::FoundReport& report, const std::
 
 PhotoCaption photo_caption(const station::FoundItem& item) {
   const station::FoundPhoto photo = item.photo.value_or(station::FoundPhoto{});
-  const std::string share = std::to_string(photo.percent) + " % of the photo are here";
+  const std::string share = std::to_string(photo.percent) + " % of the photo is here";
   PhotoCaption out{.title = std::to_string(item.number) + "  " + item.kind, .text = item.text};
   out.line = (item.mark ? "marked by " : "found by ") + item.robot + "   at " + place_words(item) + "   " +
              (item.age ? age_text(*item.age) + " ago" : "at an unknown time") + "   id " + item.id;

@@ -75,6 +75,13 @@ Window {
             width: parent.width - x
             anchors.bottom: actions.top
         }
+        PhotoPane {
+            photos: window.control.tabs.photos
+            visible: window.control.tabs.photos.open
+            width: parent.width
+            anchors.top: attention.bottom
+            anchors.bottom: actions.top
+        }
         AttentionMenu {
             attention: window.control.attention
             anchors.left: fleet.right
@@ -85,13 +92,6 @@ Window {
             control: window.control
             anchors.left: fleet.right
             anchors.right: parent.right
-            anchors.bottom: actions.top
-        }
-        PhotoPane {
-            photos: window.control.tabs.photos
-            visible: window.control.tabs.photos.open
-            width: parent.width
-            anchors.top: attention.bottom
             anchors.bottom: actions.top
         }
         ActionBar {
