@@ -395,23 +395,33 @@ PointCloud Simulation::ScanJob::compute() const {
   return points;
 }
 
-Simulation::ScanJob Simulation::scan(std::size_t index) const {
-  const Eigen::Vector3d mounted = robots_[index].body.platform().lidar_origin();
-  ScanJob job{world_, robots_[index].lidar, shutter_bodies(), robots_[index].truth.pose, mounted, 0};
+std::vector<BodyBox> Simulation::other_robots(std::size_t index) const {
+  std::vector<BodyBox> bodies;
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     if (n == index) continue;
     const Platform& platform = robots_[n].body.platform();
-    BodyBox box{robots_[n].body.pose(), robots_[n].truth.pose.position.z(), platform.length, platform.width,
-                platform.height};
-    job.others.push_back(box);
+    bodies.push_back({robots_[n].body.pose(), robots_[n].truth.pose.position.z(), platform.length,
+                      platform.width, platform.height});
   }
+  return bodies;
+}
+
+std::vector<BodyBox> Simulation::people_bodies(std::size_t index) const {
+  std::vector<BodyBox> bodies;
   for (const Person& person : people_) {
     const Rectangle body = person.body();
     const double ground = robots_[index].ground->ground(body.pose.x, body.pose.y);
-    BodyBox box{body.pose, std::isnan(ground) ? job.base.position.z() : ground, body.length, body.width,
-                Person::kHeight};
-    job.others.push_back(box);
+    bodies.push_back({body.pose, std::isnan(ground) ? robots_[index].truth.pose.position.z() : ground,
+                      body.length, body.width, Person::kHeight});
   }
+  return bodies;
+}
+
+Simulation::ScanJob Simulation::scan(std::size_t index) const {
+  const Eigen::Vector3d mounted = robots_[index].body.platform().lidar_origin();
+  ScanJob job{world_, robots_[index].lidar, shutter_bodies(), robots_[index].truth.pose, mounted, 0};
+  for (const BodyBox& body : other_robots(index)) job.others.push_back(body);
+  for (const BodyBox& body : people_bodies(index)) job.others.push_back(body);
   job.seed = derive_seed(params_.seed ^ (steps_ << 8), 2 * index + 2);
   return job;
 }

@@ -9,6 +9,7 @@
 #include "core/config/platform.hpp"
 #include "core/time/time.hpp"
 #include "sim/world/body.hpp"
+#include "sim/world/camera.hpp"
 #include "sim/world/flight_space.hpp"
 #include "sim/world/lidar.hpp"
 #include "sim/world/odometry.hpp"
@@ -129,6 +130,8 @@ class Simulation {
   };
   /// The lidar of a robot as the world is now.
   ScanJob scan(std::size_t robot) const;
+  /// A picture of a robot's camera as the world is now. `camera`: index of Platform::cameras.
+  PictureJob picture(std::size_t robot, std::size_t camera) const;
 
   /// Realistic: the sweep of a robot's lidar that ends now, in the lidar's own frame. `lidar`: index of
   /// Platform::all_lidars().
@@ -187,6 +190,9 @@ class Simulation {
   bool touches_world(const Robot& robot, const Rectangle& footprint) const;
   /// The boxes that stand, as lidars see them.
   std::vector<BodyBox> shutter_bodies() const;
+  /// The other robots, and the people, as the lidar of a robot sees them now.
+  std::vector<BodyBox> other_robots(std::size_t robot) const;
+  std::vector<BodyBox> people_bodies(std::size_t robot) const;
   /// Heights that a flying body takes up, m, world: leaning it takes up more.
   static std::pair<double, double> extent(const Robot& robot);
   void lift(Robot& robot);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of the simulation that makes bodies and sensors realistic.
+// The part of the simulation that makes bodies and sensors realistic, and its cameras.
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kSettled = 1e6;  // s: an error process of any correlation time has reached its deviation
 constexpr std::uint64_t kLidarParts = 100;         // of a sweep's seed; below are those of its faults
+constexpr double kGrain = 2.0;                     // of 255: noise of a pixel, PictureJob::grain
+constexpr std::uint64_t kCameraPart = 200;         // of a picture's seed
 constexpr std::uint64_t kSensorParts = 1'000'000;  // seeds of parts from here on are the sensors'
 
 }  // namespace
@@ -124,6 +126,23 @@ SweepJob Simulation::sweep(std::size_t index, std::size_t of) const {
                         body.width, Person::kHeight});
     }
   }
+  return job;
+}
+
+PictureJob Simulation::picture(std::size_t index, std::size_t of) const {
+  const Robot& robot = robots_[index];
+  const CameraConfig& camera = robot.body.platform().cameras[of];
+  PictureJob job;
+  job.world = world_;
+  job.T_world_camera = robot.truth.pose * camera.mounting.pose();
+  job.field_of_view = camera.field_of_view;
+  job.width = camera.width;
+  job.height = camera.height;
+  job.grain = kGrain * params_.noise;
+  job.seed = derive_seed(derive_seed(params_.seed ^ (steps_ << 8), 2 * index + 2), kCameraPart + of);
+  for (const BodyBox& body : shutter_bodies()) job.bodies.push_back({BodyKind::door, body});
+  for (const BodyBox& body : other_robots(index)) job.bodies.push_back({BodyKind::robot, body});
+  for (const BodyBox& body : people_bodies(index)) job.bodies.push_back({BodyKind::person, body});
   return job;
 }
 
