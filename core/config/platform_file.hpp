@@ -8,8 +8,8 @@
 
 namespace adit::config {
 
-/// Reads the lidars and the IMU of `sensors:` into a platform, in place of those that it has; nothing when
-/// the node is not present. Keys that are missing have the values of its first lidar.
+/// Reads the lidars, the IMU and the cameras of `sensors:` into a platform, in place of those that it has;
+/// nothing when the node is not present. Keys that are missing have the values of its first lidar.
 void read_platform_sensors(const Node& sensors, Platform& platform);
 /// Reads a platform's file, with every key of docs/configuration.md.
 Result<Platform> load_platform_file(const std::string& path);

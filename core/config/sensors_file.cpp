@@ -9,12 +9,14 @@
 namespace adit::config {
 namespace {
 
-Mounting read_mounting(const Node& node, bool flies) {
+/// `usual`: values of x, y and z that are missing; nothing: they are required.
+Mounting read_mounting(const Node& node, bool flies, const std::optional<Mounting>& usual = std::nullopt) {
   constexpr double kTurn = 2 * M_PI;
+  const Range height = flies ? within(-5, 5) : positive_up_to(5);
   Mounting m;
-  m.x = node.number("x", within(-5, 5));
-  m.y = node.number("y", within(-5, 5));
-  m.z = node.number("z", flies ? within(-5, 5) : positive_up_to(5));
+  m.x = usual ? node.number("x", within(-5, 5), usual->x) : node.number("x", within(-5, 5));
+  m.y = usual ? node.number("y", within(-5, 5), usual->y) : node.number("y", within(-5, 5));
+  m.z = usual ? node.number("z", height, usual->z) : node.number("z", height);
   m.roll = node.number("roll", within(-kTurn, kTurn), 0.0);
   m.pitch = node.number("pitch", within(-kTurn, kTurn), 0.0);
   m.yaw = node.number("yaw", within(-kTurn, kTurn), 0.0);
@@ -54,12 +56,12 @@ ImuConfig read_imu(const Node& node, bool flies) {
   return imu;
 }
 
-CameraConfig read_camera(const Node& node, bool flies) {
+CameraConfig read_camera(const Node& node, bool flies, const std::optional<Mounting>& usual) {
   CameraConfig camera;
   camera.name = node.text("name", camera.name);
   if (!command::valid_name(camera.name) || camera.name.size() > 16)
     node.fail(Reason::out_of_range, "expected a name of up to 16 letters, digits, - and _");
-  camera.mounting = read_mounting(node, flies);
+  camera.mounting = read_mounting(node, flies, usual);
   camera.topic = node.text("topic", camera.topic);
   if (camera.topic.empty()) node.fail(Reason::out_of_range, "expected a topic that is not empty");
   camera.field_of_view = node.number("field_of_view", within(0.2, 2.6), camera.field_of_view);
@@ -70,13 +72,16 @@ CameraConfig read_camera(const Node& node, bool flies) {
   return camera;
 }
 
-std::vector<CameraConfig> read_cameras(const Node& cameras, bool flies) {
+}  // namespace
+
+std::vector<CameraConfig> read_cameras(const Node& cameras, bool flies,
+                                       const std::optional<Mounting>& usual) {
   std::vector<CameraConfig> out;
   const std::vector<Node> each = cameras.is_list() ? cameras.as_list() : std::vector<Node>{cameras};
   if (each.empty() || each.size() > Sensors::kMaxCameras)
     cameras.fail(Reason::out_of_range, "expected 1 to 8 cameras");
   for (const Node& node : each) {
-    CameraConfig read = read_camera(node, flies);
+    CameraConfig read = read_camera(node, flies, usual);
     for (const CameraConfig& other : out)
       if (other.topic == read.topic || other.name == read.name)
         node.fail(Reason::out_of_range, "expected a topic and a name that no other camera has");
@@ -84,8 +89,6 @@ std::vector<CameraConfig> read_cameras(const Node& cameras, bool flies) {
   }
   return out;
 }
-
-}  // namespace
 
 Sensors read_sensors(const Node& sensors, const LidarConfig& usual, bool flies) {
   Sensors out;
