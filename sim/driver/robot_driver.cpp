@@ -85,7 +85,7 @@ Result<void> RobotDriver::start() {
     send_points();
     points_ = strand_.every(from_seconds(1.0 / simulation_.params().lidar.rate), [this] { send_points(); });
   });
-  return {};
+  return start_cameras();
 }
 
 Result<void> RobotDriver::listen() {

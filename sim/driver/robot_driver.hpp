@@ -33,7 +33,8 @@ struct DriverParams {
 
 /// A simulated robot's driver: obeys rt/cmd_vel and gives rt/odom, rt/points and rt/battery_state, in a
 /// realistic simulation also rt/imu/data, as a ROS 2 driver does. There its sensors' clocks differ by up to
-/// 5 ms, and some samples come late or overtake others. The same code on the in-memory wire and on Fast DDS.
+/// 5 ms, and some samples come late or overtake others. Cameras send while they have a reader; without one
+/// they cost nothing. The same code on the in-memory wire and on Fast DDS.
 /// All drivers of one simulation live on strands of one thread.
 class RobotDriver {
  public:
@@ -54,9 +55,12 @@ class RobotDriver {
   void lose_columns(const ColumnLoss& loss, bool begins);
   /// Realistic: the lidar is covered, see SweepJob.
   void cover(bool begins) { covers_ += begins ? 1 : -1; }
+  /// The JPEGs of all cameras end in their middle as long as this began more often than it ended.
+  void break_jpegs(bool begins) { broken_jpegs_ += begins ? 1 : -1; }
 
  private:
   struct Endpoints;
+  struct Cameras;
   /// Faults of one sensor that are active.
   struct SensorFaults {
     int silences{}, stampless{};
@@ -74,6 +78,9 @@ class RobotDriver {
   void send_battery();
   void send_points();
   void send_sweep(std::size_t lidar);
+  Result<void> start_cameras();
+  /// Takes a picture, unless nothing reads it or the one before is not ready yet.
+  void send_picture(std::size_t camera);
   /// Writes a cloud of that lidar, unless the driver is gone by then.
   static std::function<void(const Result<std::vector<std::uint8_t>>&)> sender(std::weak_ptr<Endpoints> alive,
                                                                               std::size_t lidar);
@@ -84,10 +91,11 @@ class RobotDriver {
   wire::Participant& wire_;
   DriverParams params_;
   std::shared_ptr<Endpoints> endpoints_;  // shared with scans under way
+  std::shared_ptr<Cameras> cameras_;      // shared with pictures under way; null: it has none
   Time started_{};
-  std::array<SensorFaults, 3> faults_{};
+  std::array<SensorFaults, kSensors> faults_{};
   std::vector<ColumnLoss> losses_{};
-  int covers_{};
+  int covers_{}, broken_jpegs_{};
   double noise_;
   Random random_;                         ///< Of the timing.
   Time origin_{};                         ///< The driver's clock at the simulation's begin.
@@ -95,6 +103,7 @@ class RobotDriver {
   Time imu_waits_until_{};
   std::vector<Timer> late_{};  ///< Odometry that others overtake.
   Timer odom_{}, imu_{}, battery_{}, first_points_{}, points_{};
+  std::vector<Timer> pictures_{};  ///< By camera.
 };
 
 }  // namespace adit::sim

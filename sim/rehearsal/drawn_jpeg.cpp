@@ -3,45 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <vector>
 
-#include <jpeglib.h>
-
 #include "core/time/random.hpp"
+#include "sim/driver/jpeg.hpp"
 
 namespace adit::sim {
 namespace {
 
 constexpr std::uint32_t kWidth = 160;
+constexpr int kQuality = 75;
 
 store::Bytes drawn_rows(std::uint32_t height, std::uint64_t seed) {
-  jpeg_compress_struct encoder{};
-  jpeg_error_mgr errors{};
-  encoder.err = jpeg_std_error(&errors);
-  jpeg_create_compress(&encoder);
-  unsigned char* buffer = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&encoder, &buffer, &size);
-  encoder.image_width = kWidth;
-  encoder.image_height = height;
-  encoder.input_components = 1;
-  encoder.in_color_space = JCS_GRAYSCALE;
-  jpeg_set_defaults(&encoder);
-  jpeg_start_compress(&encoder, TRUE);
   Random random(seed);
-  std::vector<JSAMPLE> row(kWidth);
-  while (encoder.next_scanline < height) {
-    for (JSAMPLE& pixel : row) pixel = static_cast<JSAMPLE>(random.next());
-    JSAMPROW at = row.data();
-    jpeg_write_scanlines(&encoder, &at, 1);
-  }
-  jpeg_finish_compress(&encoder);
-  jpeg_destroy_compress(&encoder);
-  store::Bytes out(buffer, buffer + size);
-  std::free(buffer);
-  return out;
+  std::vector<std::uint8_t> pixels(std::size_t{kWidth} * height);
+  for (std::uint8_t& pixel : pixels) pixel = static_cast<std::uint8_t>(random.next());
+  return encode_jpeg({static_cast<int>(kWidth), static_cast<int>(height), 1, pixels}, kQuality);
 }
 
 }  // namespace
