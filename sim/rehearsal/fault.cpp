@@ -125,6 +125,9 @@ std::pair<const char*, std::string> parts(const Fault& fault) {
           [](const Cover& f) {
             return Fields{"cover", f.robot + window(f.duration)};
           },
+          [](const BrokenJpeg& f) {
+            return Fields{"broken_jpeg", f.robot + window(f.duration)};
+          },
           [](const Close& f) {
             return Fields{"close", fmt::format("[{:.3f}]", fmt::join(f.box, ", ")) + window(f.duration)};
           },

@@ -141,6 +141,11 @@ struct Cover {
   std::string robot{};
   Duration duration{};
 };
+/// The JPEGs of the robot's cameras end in their middle, see RobotDriver::break_jpegs.
+struct BrokenJpeg {
+  std::string robot{};
+  Duration duration{};
+};
 /// A solid box appears as soon as neither a person nor a robot is in it, as a door that shuts: see
 /// Simulation::close.
 struct Close {
@@ -158,7 +163,7 @@ struct Fault {
   Duration at{};
   std::variant<Crash, Hang, CutLink, DegradeLink, Partition, Reorder, Duplicate, ClockJump, SensorSilent,
                StuckDrive, DiskFull, Forge, StuckStick, Find, Steer, OdometryReset, Twin, Slip, TurnSlip,
-               DriverClock, NoStamp, DriverRestart, LoseColumns, Cover, Close>
+               DriverClock, NoStamp, DriverRestart, LoseColumns, Cover, BrokenJpeg, Close>
       what{};
 };
 

@@ -133,6 +133,10 @@ void FaultPlayer::play(const Cover& fault) {
   during(fault.duration, [to = &driver(fault.robot)](bool begins) { to->cover(begins); });
 }
 
+void FaultPlayer::play(const BrokenJpeg& fault) {
+  during(fault.duration, [to = &driver(fault.robot)](bool begins) { to->break_jpegs(begins); });
+}
+
 void FaultPlayer::play(const Close& fault) {
   const std::size_t number = stage_.simulation.close(fault.box);
   later(fault.duration, [this, number] { stage_.simulation.open(number); });

@@ -50,6 +50,7 @@ class FaultPlayer {
   void play(const DriverRestart& fault);
   void play(const LoseColumns& fault);
   void play(const Cover& fault);
+  void play(const BrokenJpeg& fault);
   void play(const Close& fault);
   void disturb(wire::Disturbance disturbance, Duration duration);
   void later(Duration duration, Task task);

@@ -49,9 +49,9 @@ struct Impairment {
 std::optional<Impairment> impairment(const Fault& fault) {
   constexpr Duration kRecovery{2s};  // After which a sensor that was wrong is trusted again.
   const auto of = [&](const std::string& robot, Sensor sensor, Duration duration) {
-    return sensor == Sensor::imu
-               ? std::nullopt
-               : std::optional(Impairment{robot, sensor, fault.at, fault.at + duration + kRecovery});
+    const bool needed = sensor == Sensor::lidar || sensor == Sensor::odometry;
+    return needed ? std::optional(Impairment{robot, sensor, fault.at, fault.at + duration + kRecovery})
+                  : std::nullopt;
   };
   if (const auto* f = std::get_if<SensorSilent>(&fault.what)) return of(f->robot, f->sensor, f->duration);
   if (const auto* f = std::get_if<DriverClock>(&fault.what)) return of(f->robot, f->sensor, f->duration);

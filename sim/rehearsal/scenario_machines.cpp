@@ -5,6 +5,7 @@
 #include "core/command/words.hpp"
 #include "core/config/platform_file.hpp"
 #include "core/config/search.hpp"
+#include "core/config/sensors_file.hpp"
 #include "robot_agent/behaviour/tree_check.hpp"
 #include "sim/rehearsal/scenario_parts.hpp"
 
@@ -55,6 +56,15 @@ void read_sensors(const Node& robot, const Scenario& scenario, RobotSpec& spec) 
     robot.child("sensors").fail(Reason::bad_argument, "expected lidar: full, which has a place and a topic");
 }
 
+// In place of those of the platform. They look ahead from the top of the body's front, unless they say
+// otherwise.
+void read_cameras(const Node& robot, RobotSpec& spec) {
+  Platform& platform = spec.settings.platform;
+  if (const Node camera = robot.child_if("camera"); camera.present())
+    platform.cameras = config::read_cameras(camera, platform.flies(),
+                                            Mounting{.x = 0.5 * platform.length, .z = platform.height});
+}
+
 void read_battery(const Node& robot, RobotSpec& spec) {
   const Node battery = robot.child_if("battery");
   if (!battery.present()) return;
@@ -82,6 +92,7 @@ RobotSpec read_spec(const Node& robot, const Scenario& scenario, Duration lock_l
     robot.child("id").fail(Reason::bad_argument, std::string("expected ") + command::kRobotName);
   if (!has_file || robot.has("platform")) read_body(robot, scenario, spec);
   read_sensors(robot, scenario, spec);
+  read_cameras(robot, spec);
   if (!has_file || robot.has("pose")) {
     const std::vector<double> pose = robot.numbers("pose", 3, 3, config::within(-1e5, 1e5));
     if (pose.size() == 3) spec.pose = {pose[0], pose[1], wrap_angle(pose[2])};
