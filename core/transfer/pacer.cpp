@@ -6,8 +6,7 @@
 namespace adit::transfer {
 namespace {
 
-constexpr std::size_t kBulkPriority = 5;  // See core/wire/link.hpp.
-constexpr double kBurst = 0.1;            // s
+constexpr double kBurst = 0.1;  // s
 constexpr std::size_t kMinPieceBytes = 128;
 
 }  // namespace
@@ -18,8 +17,8 @@ void Pacer::observe(Time now, const wire::SenderState& link, std::size_t peers) 
   peers_ = std::max<std::size_t>(1, peers);
   piece_bytes_ =
       std::clamp(frame > kPieceOverhead ? frame - kPieceOverhead : 0, kMinPieceBytes, kMaxPieceBytes);
-  const Duration queue = link.waiting(kBulkPriority);
-  control_.observe(now, lossy_ ? std::max<Duration>(queue, 1s) : queue, link.lost(kBulkPriority));
+  const Duration queue = link.waiting(params_.priority);
+  control_.observe(now, lossy_ ? std::max<Duration>(queue, 1s) : queue, link.lost(params_.priority));
   rate_ = std::min(params_.max_rate, params_.share * bandwidth / 8.0) * control_.rate() /
           wire::RateParams{}.max_rate;
   if (started_) credit_ += rate_ * std::max(0.0, seconds(now - at_));

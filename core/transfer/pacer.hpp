@@ -14,13 +14,14 @@ struct PacerParams {
   double max_rate{60e3};        ///< Largest rate over all peers, bytes/s.
   double unknown_link{4e6};     ///< Bandwidth assumed where no profile limits the sender, bit/s.
   Duration max_queue{60ms};     ///< Airtime queued above which nothing is added.
+  std::size_t priority{5};      ///< Of the class, see core/wire/link.hpp.
   double max_loss{0.5};         ///< Share of lost pieces above which the link counts as full, (0, 1].
   std::size_t loss_window{16};  ///< Number of pieces over which the loss is measured.
 };
 
-/// Says how many bytes of class `bulk` may go out now. Rate = a share of the link's bandwidth, reduced while
-/// the queue persists or messages are dropped (wire::RateControl). It allows at most one piece beyond a tenth
-/// of a second, so that a command that comes next waits for one frame. Reads no clock.
+/// Says how many bytes of class `bulk` or `video` may go out now. Rate = a share of the link's bandwidth,
+/// reduced while the queue persists or messages are dropped (wire::RateControl). It allows at most one piece
+/// beyond a tenth of a second, so that a command that comes next waits for one frame. Reads no clock.
 class Pacer {
  public:
   explicit Pacer(PacerParams params = {}) : params_(params) {}

@@ -19,6 +19,7 @@ enum class Kind : std::uint8_t {
   carried_blocks = 4,  ///< Of another robot's map than the sender's.
   carried_poses = 5,
   photos = 6,
+  shots = 7,  ///< Single pictures of cameras, for the station that asked.
 };
 
 constexpr bool is_carried(std::uint8_t kind) {
