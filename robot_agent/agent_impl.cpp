@@ -47,11 +47,12 @@ Agent::Impl::Impl(const AgentParams& agent_params, Runtime& agent_runtime)
       sensors(agent_runtime, sensors_unit()),
       map(agent_runtime, map_unit()),
       stairs(agent_runtime, stairs_unit()),
+      cameras(agent_runtime, cameras_unit()),
       watch_strand(agent_runtime.strand("supervisor")) {}
 
 Agent::Impl::~Impl() {
   watch_strand->end();
-  for (Unit* unit : {&command, &sensors, &planner, &router, &map, &stairs}) unit->end();
+  for (Unit* unit : {&command, &sensors, &planner, &router, &map, &stairs, &cameras}) unit->end();
   end_disk();
   if (watch) watch->stop();
   if (context && context->radio) context->radio->close();
@@ -107,6 +108,27 @@ UnitParams Agent::Impl::stairs_unit() {
             StairsParams{.instance = ++context->stairs_searches, .eye = params.platform.lidar_origin()},
             strand, Log(params.log, params.name), context->stairs_search);
       }};
+}
+
+UnitParams Agent::Impl::cameras_unit() {
+  UnitParams unit{.name = "cameras", .dedicated = true};
+  unit.make = [this](Executor& strand) -> std::unique_ptr<Component> {
+    Random runs = Random(params.seed).fork(kCameraSalt + (std::uint64_t{++context->camera_parts} << 8));
+    return std::make_unique<CameraPart>(CameraParams{.robot = params.name,
+                                                     .cameras = params.platform.cameras,
+                                                     .run = static_cast<std::uint32_t>(runs.next()) | 1U},
+                                        strand, Log(params.log, params.name), *camera_ends, context->cameras,
+                                        context->place_then,
+                                        [&inputs = *context->inputs, &strand](const InputFault& fault) {
+                                          inputs.report(fault, strand.now());
+                                        });
+  };
+  unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
+    camera_ends =
+        std::make_unique<CameraEnds>(CameraEnds{io_of(*slot, *context->wire), io_of(*slot, *robot_wire)});
+    return std::shared_ptr<void>();
+  };
+  return unit;
 }
 
 UnitParams Agent::Impl::sensors_unit() {
@@ -240,13 +262,15 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
                                         },
                                         [&e] { return e.map ? e.map->pose_changes() : std::uint64_t{0}; }})
           : nullptr;
-  for (Unit* unit : {&planner, &router, &sensors, &map, &stairs})
-    if ((unit != &router || routes_it) && (unit != &map || maps_it) && (unit != &stairs || e.stairs))
+  if (!params.platform.cameras.empty()) e.shots = std::make_unique<ShotSource>();
+  for (Unit* unit : {&planner, &router, &sensors, &map, &stairs, &cameras})
+    if ((unit != &router || routes_it) && (unit != &map || maps_it) && (unit != &stairs || e.stairs) &&
+        (unit != &cameras || e.shots))
       if (const auto opened = unit->open(); !opened) return opened.error();
   if (maps_it) open_map();
   if (params.carry_maps) e.carrier = std::make_unique<Carrier>(Random(params.seed).fork(kCarrySalt).next());
   e.content = std::make_unique<ContentSender>(Random(params.seed).fork(kContentSalt).next(), *e.findings,
-                                              *e.photo_sources, e.map.get(), e.carrier.get());
+                                              *e.photo_sources, e.map.get(), e.carrier.get(), e.shots.get());
   const Task send_pieces = [&e] {
     if (e.command_component) e.command_component->send_pieces();
   };
@@ -265,6 +289,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   watch->watch(sensors, {.name = "sensors"});
   if (maps_it) watch->watch(map, {.name = "map"});
   if (e.stairs) watch->watch(stairs, {.name = "stairs"});
+  if (e.shots) watch->watch(cameras, {.name = "cameras"});
   if (params.disk) watch->note(store_health(false));
   return e.radio->listen(
       {e.directory, e.namesakes,
@@ -299,10 +324,25 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
            });
          });
        },
-       pieces_to_carry(),
+       pieces_to_carry(), views_of_cameras(),
        [with_command](const std::string& name, const std::string& why) {
          with_command([&](CommandComponent& component) { component.announcement_refused(name, why); });
        }});
+}
+
+std::function<void(const contract::CameraViews&, const wire::ParticipantId&)>
+Agent::Impl::views_of_cameras() {
+  if (!context->shots) return {};
+  return [this](const contract::CameraViews& views, const wire::ParticipantId& from) {
+    CommandComponent* component = context->command_component;
+    if (component == nullptr) return;
+    component->commands([&](CommandInterface& interface) {
+      // Only the participant that is bound to the station speaks for it.
+      const Station* known = interface.stations().by_participant(from);
+      if (known && known->name == views.station && known->id == views.station_id)
+        component->look(views.station_id, views.views);
+    });
+  };
 }
 
 std::function<void(const contract::BulkPiece&, const wire::ParticipantId&)> Agent::Impl::pieces_to_carry() {
@@ -403,9 +443,9 @@ void Agent::Impl::with_findings(std::function<Result<void>(FindingSource& source
 }
 
 Unit* Agent::Impl::find(const std::string& component) {
-  for (Unit* unit : {&command, &planner, &router, &sensors, &map, &stairs})
+  for (Unit* unit : {&command, &planner, &router, &sensors, &map, &stairs, &cameras})
     if (unit->name() == component && (unit != &router || context->router) && (unit != &map || context->map) &&
-        (unit != &stairs || context->stairs))
+        (unit != &stairs || context->stairs) && (unit != &cameras || context->shots))
       return unit;
   return nullptr;
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <mutex>
 
+#include "robot_agent/camera/camera_part.hpp"
 #include "robot_agent/command_component.hpp"
 #include "robot_agent/motion/scans.hpp"
 
@@ -13,6 +14,7 @@ inline constexpr std::uint64_t kFindingsSalt = 2;
 inline constexpr std::uint64_t kMapSalt = 3;
 inline constexpr std::uint64_t kContentSalt = 4;
 inline constexpr std::uint64_t kCarrySalt = 5;
+inline constexpr std::uint64_t kCameraSalt = 6;
 
 /// The implementation of Agent: its units, each on a strand of its own, their shared context, and the
 /// supervisor. Private to agent.cpp.
@@ -33,7 +35,9 @@ struct Agent::Impl {
   Runtime& runtime;
   wire::Participant* robot_wire{};
   std::unique_ptr<Context> context{};
-  Unit command, planner, router, sensors, map, stairs;
+  Unit command, planner, router, sensors, map, stairs, cameras;
+  /// The ends of the component `cameras` on both domains, for its present strand.
+  std::unique_ptr<CameraEnds> camera_ends{};
   std::shared_ptr<Strand> watch_strand;
   std::shared_ptr<Strand> disk_strand{};  ///< Null: there is no disk, or its writes take no time.
   std::unique_ptr<AgentSupervisor> watch{};
@@ -53,12 +57,14 @@ struct Agent::Impl {
   /// Where a place (map frame, m) is in this robot's newest submap.
   std::optional<findings::Anchor> anchor_of(const std::array<double, 3>& place) const;
   std::function<void(const contract::BulkPiece&, const wire::ParticipantId&)> pieces_to_carry();
+  std::function<void(const contract::CameraViews&, const wire::ParticipantId&)> views_of_cameras();
   UnitParams command_unit();
   UnitParams planner_unit();
   UnitParams router_unit();
   UnitParams sensors_unit();
   UnitParams map_unit();
   UnitParams stairs_unit();
+  UnitParams cameras_unit();
 };
 
 }  // namespace adit::agent

@@ -161,6 +161,9 @@ Result<void> Agent::CommandComponent::on_start() {
   offer(context_.frames.correct, [this](const MapFrame& corrected, const Reply<MapFrame>& reply) {
     reply(localiser_.correct_map(corrected));
   });
+  if (context_.shots)
+    offer(context_.place_then,
+          [this](const PlaceQuery& query, const Reply<PlaceThen>& reply) { reply(place_then(query)); });
   context_.command_component = this;
   context_.driver->write({});
   if (context_.instances == 1)
@@ -176,6 +179,7 @@ Result<void> Agent::CommandComponent::on_start() {
     telemetry_.send_route(now(), followed_route(now()));
     context_.directory.tick(now());
     send_beacon(now());
+    if (cameras_active_) ask_cameras({});
   }));
   timers_.push_back(every(kStatusPeriod, [this] {
     commands_.tick(now());
@@ -544,6 +548,39 @@ void Agent::CommandComponent::send_pieces() {
     if (const auto receipts = context_.carrier->due(now(), link.link != nullptr ? link.link->bandwidth : 0.0))
       context_.radio->send(context_.carrier->id(), *receipts);
   });
+}
+
+void Agent::CommandComponent::look(const transfer::PeerId& station, std::vector<contract::CameraView> views) {
+  std::erase_if(views, [this](const contract::CameraView& view) { return view.robot != params_.name; });
+  if (!views.empty() && context_.shots)
+    protect([&] { ask_cameras({.station = station, .views = std::move(views)}); });
+}
+
+void Agent::CommandComponent::ask_cameras(CameraOrder order) {
+  call(context_.cameras, std::move(order), {.deadline = 1s}, [this](const Result<CameraAnswer>& answer) {
+    if (!answer) return;  // The next view comes within a second.
+    cameras_active_ = answer->active;
+    for (const TakenShot& shot : answer->shots) context_.shots->add(shot, now());
+  });
+}
+
+PlaceThen Agent::CommandComponent::place_then(const PlaceQuery& query) const {
+  constexpr std::int64_t kApart = 1'000'000'000;  // ns; drivers of one computer are nearer to each other.
+  const Time at = now();
+  PlaceThen out{.age = at - query.received};
+  if (!frames_.initialised()) return out;
+  Pose3 T_odom_base = frames_.T_odom_base();
+  const std::uint64_t newest = frames_.newest_stamp();
+  if (query.stamp != 0 && newest != 0) {
+    const auto ahead = static_cast<std::int64_t>(newest - query.stamp);
+    out.foreign_clock = std::abs(ahead) > kApart;
+    if (!out.foreign_clock) {
+      out.age = std::max<Duration>(out.age, Duration(ahead) + frames_.silence(at, at));
+      if (const auto then = frames_.T_odom_base_at(query.stamp)) T_odom_base = *then;
+    }
+  }
+  if (localiser_.recognised()) out.T_map_base = frames_.map_frame().T_map_odom * T_odom_base;
+  return out;
 }
 
 std::string Agent::CommandComponent::at_console(const std::string& line) {

@@ -10,6 +10,8 @@
 #include "core/wire/link/rate_control.hpp"
 #include "robot_agent/agent.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
+#include "robot_agent/camera/camera_calls.hpp"
+#include "robot_agent/camera/shot_source.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/command/map_commands.hpp"
 #include "robot_agent/common/rate_limit.hpp"
@@ -79,7 +81,11 @@ struct Agent::Context {
   std::unique_ptr<Carrier> carrier{};        ///< Null: this robot carries no maps.
   std::unique_ptr<ContentSender> content{};  ///< Of the findings and the maps.
   MapService map_insertion{"map insertion", 2};
+  CameraService cameras{"cameras", 4};
+  PlaceService place_then{"place of a picture", 16};
+  std::unique_ptr<ShotSource> shots{};  ///< Null: this robot has no camera.
   StairsService stairs_search{"stairs", 2};
+  std::uint32_t camera_parts{};     ///< Instances of the component `cameras` so far; by itself only.
   std::uint32_t stairs_searches{};  ///< Instances of the search so far; by the stairs component only.
   std::unique_ptr<StairsReporter> stairs{};  ///< Null: this robot seeks no staircases.
   AgentSupervisor* watch{};                  ///< From any thread.
@@ -108,6 +114,8 @@ class Agent::CommandComponent : public Component {
   /// Handles a command; see MapCommands::handle().
   void handle(const Command& command, const MapCommands::Answered& answered);
   std::string at_console(const std::string& line);
+  /// Passes on what a station looks at of this robot's cameras.
+  void look(const transfer::PeerId& station, std::vector<contract::CameraView> views);
   /// Stores the state that must survive a restart.
   void keep();
   /// Sends the pieces of findings and maps that are ready, as the link allows.
@@ -145,6 +153,10 @@ class Agent::CommandComponent : public Component {
   std::vector<Staircase> known_stairs() const;
   /// Sends findings and maps to the stations, or its map to carriers, as the link allows.
   void send_content();
+  /// Asks the component `cameras` for the pictures that it took.
+  void ask_cameras(CameraOrder order);
+  /// Where the robot was when a picture was taken.
+  PlaceThen place_then(const PlaceQuery& query) const;
   /// Sends this robot's state to the other robots, when the link allows.
   void send_beacon(Time at);
   Facts sense(Time now) const;
@@ -188,6 +200,7 @@ class Agent::CommandComponent : public Component {
   bool gives_way_{};                         ///< It gives way to another robot of its name.
   RateLimit<bool> namesakes_reported_{10s};  // The key is `gives_way_`.
   RateLimit<int> refusals_reported_{10s};    // Under one key: a stranger may invent any number of names.
+  bool cameras_active_{};                    ///< A picture is wanted, or is being taken.
   BeaconRate beacon_rate_{};
   std::uint32_t beats_{};    ///< Number of calls of beat().
   std::uint32_t beacons_{};  ///< Number of beacons sent.

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/contract/common.hpp"
@@ -12,6 +13,9 @@ class CameraViews;
 }  // namespace adit::radio
 
 namespace adit::contract {
+
+/// What stands before the name of a camera in Capabilities::sensors.
+inline constexpr std::string_view kCameraSensor = "camera:";
 
 /// A piece of a picture of a robot's camera; `data` is that of perception/camera.
 struct CameraPiece {

@@ -6,14 +6,16 @@
 namespace adit::agent {
 
 ContentSender::ContentSender(std::uint64_t seed, FindingSource& findings, findings::PhotoSources& photos,
-                             MapKeeper* map, Carrier* carrier)
+                             MapKeeper* map, Carrier* carrier, ShotSource* shots)
     : findings_(findings),
       photos_(photos),
       map_(map),
       carrier_(carrier),
+      shots_(shots),
       sender_({.session = static_cast<std::uint32_t>(Random(seed).next()) | 1U}) {
   sender_.add(findings_);
   sender_.add(photos_.thumbnails);
+  if (shots_ != nullptr) sender_.add(*shots_);
   if (map_ != nullptr)
     for (transfer::Source* source : map_->sources()) sender_.add(*source);
   if (carrier_ != nullptr)
@@ -36,6 +38,7 @@ std::vector<transfer::Piece> ContentSender::due(Time now, const wire::SenderStat
   photos_.ledger.tick(now);
   if (map_ != nullptr) map_->tick(now);
   if (carrier_ != nullptr) carrier_->tick(now);
+  if (shots_ != nullptr) shots_->tick(now);
   return sender_.due(now, link);
 }
 

@@ -14,7 +14,7 @@ using findings::Finding;
 using findings::FindingPiece;
 using transfer::PeerId;
 
-constexpr std::uint8_t kAlone = 2;  // A finding that was lost so often goes alone.
+constexpr std::uint8_t kAloneLosses = 2;  // A finding that was lost so often goes alone.
 
 Duration pause_after(std::uint8_t losses) {
   if (losses < 2) return {};
@@ -237,7 +237,7 @@ std::vector<FindingSource::Due> FindingSource::due(std::span<const PeerId> peers
         earliest = std::min(earliest.value_or(want.next), want.next);
       else {
         Due& one = ids.try_emplace(id, Due{&sendable(id), false, false, want.since}).first->second;
-        one.alone |= want.losses >= kAlone;
+        one.alone |= want.losses >= kAloneLosses;
         one.first |= want.first;
         one.since = std::min(one.since, want.since);
       }

@@ -12,7 +12,7 @@ using perception::BlockIndex;
 using perception::in_large_voxels;
 using transfer::PeerId;
 
-constexpr std::uint64_t kAlone = 1ULL << 63U;  // Groups of submaps without a lattice in common.
+constexpr std::uint64_t kAloneSubmap = 1ULL << 63U;  // Groups of submaps without a lattice in common.
 constexpr double kCovered = 0.9;
 constexpr std::size_t kVotes = 3;             // The newest ones decide, see BlockVotes.
 constexpr std::size_t kLookedForCovered = 8;  // Oldest submaps: a few ms.
@@ -55,7 +55,7 @@ bool BlockSource::is_first(std::uint32_t submap) const {
 SubmapPlace BlockSource::place_of(std::uint32_t submap) const {
   const auto named = names_.find(submap);
   return named != names_.end() ? named->second
-                               : SubmapPlace{params_.start, submap, kAlone | submap, BlockIndex{}};
+                               : SubmapPlace{params_.start, submap, kAloneSubmap | submap, BlockIndex{}};
 }
 
 BlockSource::LatticeCell BlockSource::cell_of(const Ref& ref) const {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "core/contract/camera.hpp"
+
 namespace adit::agent {
 
 Command received(contract::Command message, const wire::ParticipantId& sender) {
@@ -45,6 +47,8 @@ contract::Capabilities capabilities_of(const Platform& platform, const std::stri
                              .max_slope = static_cast<float>(std::atan(platform.max_slope)),
                              .stairs = platform.stairs,
                              .sensors = {"lidar", "odometry", "battery"}};
+  for (const CameraConfig& camera : platform.cameras)
+    out.sensors.push_back(std::string(contract::kCameraSensor) + camera.name);
   if (platform.router != "none") out.services.push_back(service::kRoute);
   for (const char* word : {service::kTilt, service::kMapRevision}) out.services.push_back(word);
   if (platform.turns_on_spot()) out.services.push_back(service::kTurnOnSpot);

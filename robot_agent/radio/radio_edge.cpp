@@ -5,6 +5,7 @@
 
 #include "adit/authority.h"
 #include "adit/bulk.h"
+#include "adit/camera.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "adit/link.h"
@@ -178,6 +179,13 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
            e.read(topics::kBulkAck, e.acknowledged),
        })
     if (!made) return made.error();
+  if (dependencies.cameras) {
+    auto opened = e.read(topics::kCameraViews, [take = dependencies.cameras](const radio::CameraViews& sample,
+                                                                             const wire::SampleInfo& info) {
+      if (const auto views = contract::decode(sample)) take(*views, info.sender);
+    });
+    if (!opened) return opened.error();
+  }
   if (!dependencies.piece_to_carry) return {};
   if (auto made = e.io.open(e.carrier_ack, topics::kBulkAck, topics::kCarryPartition); !made)
     return made.error();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/config/platform.hpp"
+#include "core/contract/camera.hpp"
 #include "core/contract/robot.hpp"
 #include "core/transfer/piece.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
@@ -41,6 +42,8 @@ class RadioEdge {
         pieces_acknowledged{};
     /// Takes a piece of another robot's map. Empty: this robot carries no maps.
     std::function<void(const contract::BulkPiece& piece, const wire::ParticipantId& from)> piece_to_carry{};
+    /// Takes what a station looks at of cameras. Empty: this robot has none.
+    std::function<void(const contract::CameraViews& views, const wire::ParticipantId& from)> cameras{};
     /// Takes the reason why what a robot or station announced was refused.
     std::function<void(const std::string& name, const std::string& why)> refused{};
   };

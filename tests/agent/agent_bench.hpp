@@ -68,8 +68,9 @@ class AgentBench {
 
   explicit AgentBench(AgentParams params = {}, std::uint64_t seed = 1,
                       const std::string& tree = source_folder() + "/config/trees/robot.xml",
-                      const Wrap& wrap = {})
-      : params_(std::move(params)), scheduler_(seed), network_(scheduler_, {seed}) {
+                      const Wrap& wrap = {}, const wire::LinkProfile& link = {})
+      : params_(std::move(params)), scheduler_(seed), network_(scheduler_, {.seed = seed, .link = link}) {
+    network_.set_link("r1", "driver", {});
     params_.tree = tree;
     if (!params_.library) params_.library = nav::PlannerLibrary::shared;
     machine_ = scheduler_.machine("r1", 77777s);

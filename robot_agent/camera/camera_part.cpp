@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/camera/camera_part.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "adit/camera.h"
+#include "core/wire/topics.hpp"
+#include "sensor_msgs/msg/CompressedImage.h"
+#include "sensor_msgs/msg/Image.h"
+
+namespace adit::agent {
+namespace {
+
+constexpr Duration kTick = 10ms;
+constexpr Duration kSeek = 1s;  // Between two looks at what the driver writes.
+constexpr std::size_t kMaxShots = 4;
+constexpr std::size_t kMaxArrivals = 256;
+
+}  // namespace
+
+struct CameraPart::Camera {
+  CameraConfig config{};
+  CameraStream stream;
+  std::string topic{}, raw{}, compressed{};  ///< `topic` without rt/, the others with it.
+  std::unique_ptr<wire::RawReader> reader{};
+  Time sought{}, heard{};  ///< When the topics were looked for, and when a picture came.
+  std::vector<std::pair<transfer::PeerId, std::uint32_t>> shooting{};  ///< Whose picture is being coded.
+};
+
+struct CameraPart::Coded {
+  perception::StripeEncoder::Coded picture{};
+};
+
+struct CameraPart::Output {
+  wire::Writer<radio::CameraPiece> pieces{};
+};
+
+CameraPart::CameraPart(CameraParams params, Executor& strand, Log log, const CameraEnds& ends,
+                       CameraService& service, const PlaceService& place,
+                       std::function<void(const InputFault&)> fault)
+    : Component("cameras", strand, std::move(log), {.beat = 100ms}),
+      params_(std::move(params)),
+      ends_(ends),
+      service_(service),
+      place_(place),
+      fault_(std::move(fault)),
+      pacer_(params_.pacing),
+      output_(std::make_unique<Output>()) {
+  for (const CameraConfig& config : params_.cameras)
+    cameras_.push_back(
+        std::make_unique<Camera>(Camera{.config = config,
+                                        .stream = CameraStream(params_.run),
+                                        .topic = config.topic,
+                                        .raw = "rt/" + config.topic + "/image_raw",
+                                        .compressed = "rt/" + config.topic + "/image_raw/compressed"}));
+}
+
+CameraPart::~CameraPart() = default;
+
+Result<void> CameraPart::on_start() {
+  offer(service_, [this](const CameraOrder& order, const Reply<CameraAnswer>& reply) { reply(take(order)); });
+  return {};
+}
+
+void CameraPart::on_stop() {
+  tick_.cancel();
+  for (const auto& camera : cameras_) camera->reader.reset();
+}
+
+CameraAnswer CameraPart::take(const CameraOrder& order) {
+  if (order.station)
+    for (const contract::CameraView& view : order.views)
+      for (const auto& camera : cameras_)
+        if (camera->config.name == view.camera) camera->stream.look(*order.station, view, now());
+  update();
+  CameraAnswer answer{.shots = std::exchange(shots_, {})};
+  for (const auto& camera : cameras_)
+    answer.active = answer.active || camera->stream.is_active(now()) || !camera->shooting.empty();
+  return answer;
+}
+
+void CameraPart::update() {
+  bool any = false;
+  for (const auto& camera : cameras_) {
+    const bool active = camera->stream.is_active(now());
+    any = any || active;
+    if (!active) {
+      camera->reader.reset();
+      continue;
+    }
+    if (!camera->reader && (camera->sought == Time{} || now() - camera->sought >= kSeek)) open(*camera);
+  }
+  if (any && !tick_.active()) tick_ = every(kTick, [this] { tick(); });
+  if (!any) tick_.cancel();
+}
+
+void CameraPart::open(Camera& camera) {
+  camera.sought = now();
+  const auto written = [&](const std::string& name) {
+    const auto ends = ends_.robot.wire.endpoints(name);
+    return std::ranges::any_of(ends, [](const wire::RemoteEndpoint& end) { return end.writes; });
+  };
+  // Of a driver that writes both, the smaller messages.
+  const bool compressed = written(camera.compressed);
+  if (!compressed && !written(camera.raw))
+    return report(camera,
+                  {Reason::driver_silent, "no driver writes /" + camera.topic + "/image_raw or /" +
+                                              camera.topic + "/image_raw/compressed"},
+                  "sensor_silent");
+  // A camera sends far more pictures than are needed: only those are decoded.
+  const auto handler = [this, &camera]<class Message>(const Message&) {
+    return [this, &camera](std::span<const std::uint8_t> bytes, const wire::SampleInfo& info) {
+      bool good = true;
+      protect([&] {
+        camera.heard = info.received;
+        if (!needs_picture(camera)) return;
+        Message message;
+        good = wire::decode(bytes, message);
+        if (good) take(camera, std::make_shared<DriverPicture>(picture_of(message, info.received)));
+      });
+      return good;
+    };
+  };
+  wire::TopicInfo topic = wire::topics::kImage;
+  if (compressed) topic = wire::topics::kCompressedImage;
+  topic.name = compressed ? camera.compressed.c_str() : camera.raw.c_str();
+  auto reader =
+      ends_.robot.wire.make_reader(topic, {}, ends_.robot.strand,
+                                   compressed ? wire::RawHandler(handler(sensor_msgs::msg::CompressedImage{}))
+                                              : wire::RawHandler(handler(sensor_msgs::msg::Image{})));
+  if (!reader) return report(camera, reader.error(), "sensor_silent");
+  camera.reader = std::move(*reader);
+  camera.heard = now();
+}
+
+void CameraPart::tick() {
+  update();
+  const Time at = now();
+  for (const auto& camera : cameras_)
+    if (camera->reader && at - camera->heard > kSilent) {
+      report(*camera, {Reason::driver_silent, "its driver sends no pictures"}, "sensor_silent");
+      camera->reader.reset();  // Looks again for what is written.
+    }
+  send(at);
+}
+
+void CameraPart::send(Time at) {
+  const auto watched =
+      std::ranges::count_if(cameras_, [&](const auto& camera) { return camera->stream.is_watched(at); });
+  if (watched == 0) return;
+  // At the first look, so that a robot at which no station ever looks has no endpoint for it.
+  if (!output_->pieces) {
+    if (const auto opened = ends_.radio.open(output_->pieces, wire::topics::kCamera); !opened)
+      return fail(opened.error().text);
+  }
+  const std::size_t readers = std::max<std::size_t>(1, output_->pieces.matched());
+  pacer_.observe(at, ends_.radio.wire.sender(), readers);
+  for (const auto& camera : cameras_) {
+    for (const CameraStream::Arrivals& report : camera->stream.take_arrivals())
+      for (std::uint32_t i = 0; i < std::min<std::size_t>(report.sent, kMaxArrivals); ++i)
+        pacer_.settled(i < report.arrived);
+    camera->stream.adapt(pacer_.rate() / static_cast<double>(watched) / static_cast<double>(readers), at);
+  }
+  std::size_t idle = 0;
+  while (pacer_.allows() && idle < cameras_.size()) {
+    Camera& camera = *cameras_[turn_ % cameras_.size()];
+    if (!camera.stream.has_pieces()) {
+      ++turn_;
+      ++idle;
+      continue;
+    }
+    idle = 0;
+    contract::CameraPiece piece{params_.robot, camera.config.name, camera.stream.next_piece(at)};
+    pacer_.sent(piece.data.size());
+    (void)output_->pieces.write(encode(piece));  // Best effort: a lost piece leaves a gap.
+    if (!camera.stream.has_pieces()) ++turn_;    // One picture each.
+  }
+}
+
+bool CameraPart::needs_picture(const Camera& camera) const {
+  return camera.stream.is_ready(now()) || (camera.shooting.empty() && camera.stream.shot_wanted(now()));
+}
+
+void CameraPart::take(Camera& camera, std::shared_ptr<const DriverPicture> picture) {
+  if (camera.shooting.empty() && camera.stream.shot_wanted(now())) shoot(camera, picture);
+  if (camera.stream.is_ready(now())) code(camera, picture);
+}
+
+void CameraPart::code(Camera& camera, const std::shared_ptr<const DriverPicture>& picture) {
+  camera.stream.begin(now());
+  camera.stream.prepare_encoder();
+  const std::size_t stripe =
+      pacer_.piece_bytes() - perception::kPictureHeaderBytes - perception::kStripeBytes;
+  compute(
+      {.name = "camera picture",
+       .modelled = params_.modelled,
+       .priority = JobPriority::low,
+       .lane = camera.config.name},
+      [picture, encoder = camera.stream.encoder(), rung = camera.stream.rung(), stripe,
+       at = now()]() -> Result<Coded> {
+        const auto pixels = pixels_of(*picture, rung.width, rung.height);
+        if (!pixels) return pixels.error();
+        const perception::PictureFormat format{.width = static_cast<std::uint16_t>(pixels->width),
+                                               .height = static_cast<std::uint16_t>(pixels->height),
+                                               .colour = rung.colour && pixels->channels == 3,
+                                               .quality = rung.quality};
+        Coded out{encoder->encode(*pixels, format, stripe, at)};
+        if (out.picture.format.span == 0) return Error{Reason::internal, "a picture could not be coded"};
+        return out;
+      },
+      [this, &camera, picture](Result<Coded> result) { coded(camera, picture, std::move(result)); });
+}
+
+void CameraPart::coded(Camera& camera, const std::shared_ptr<const DriverPicture>& picture,
+                       Result<Coded> result) {
+  if (!result) {
+    camera.stream.failed();
+    return report(camera, result.error(), "sensor_refused");
+  }
+  locate(camera, *picture,
+         [this, &camera, stamp = picture->stamp, coded = std::make_shared<Coded>(std::move(*result))](
+             const std::optional<Pose3>& T_map_base, Time exposed) {
+           std::optional<Pose3> T_map_camera;
+           if (T_map_base) T_map_camera = *T_map_base * camera.config.mounting.pose();
+           camera.stream.coded(std::move(coded->picture), stamp, T_map_camera, exposed, pacer_.piece_bytes());
+           send(now());
+         });
+}
+
+void CameraPart::shoot(Camera& camera, const std::shared_ptr<const DriverPicture>& picture) {
+  camera.shooting = camera.stream.take_shots(now());
+  compute(
+      {.name = "camera shot",
+       .modelled = 2 * params_.modelled,
+       .priority = JobPriority::low,
+       .lane = camera.config.name + " shot"},
+      [picture]() -> Result<std::vector<std::uint8_t>> { return jpeg_of(*picture); },
+      [this, &camera, picture](Result<std::vector<std::uint8_t>> jpeg) {
+        const auto wanted = std::exchange(camera.shooting, {});
+        if (!jpeg) return report(camera, jpeg.error(), "sensor_refused");
+        locate(camera, *picture,
+               [this, name = camera.config.name, stamp = picture->stamp, wanted, jpeg = std::move(*jpeg)](
+                   const std::optional<Pose3>& T_map_base, Time exposed) {
+                 const auto age = static_cast<std::uint32_t>((now() - exposed) / 1ms);
+                 for (const auto& [station, number] : wanted)
+                   if (shots_.size() < kMaxShots)
+                     shots_.push_back({station, number, name, stamp, age, T_map_base, jpeg});
+               });
+      });
+}
+
+void CameraPart::locate(const Camera& camera, const DriverPicture& picture,
+                        std::function<void(const std::optional<Pose3>&, Time)> done) {
+  const Time received = picture.received;
+  call(place_, PlaceQuery{picture.stamp, received}, {.deadline = 200ms},
+       [this, &camera, received, done = std::move(done)](const Result<PlaceThen>& place) {
+         if (!place) return done(std::nullopt, received);
+         if (place->foreign_clock)
+           report(
+               camera,
+               {Reason::out_of_range,
+                "its stamps are far from those of the odometry: pictures get the pose and the age of their "
+                "arrival; are both clocks synchronised?"},
+               "camera_clock");
+         done(place->T_map_base, now() - place->age);
+       });
+}
+
+void CameraPart::report(const Camera& camera, const Error& cause, const char* code) {
+  fault_({camera.topic + "/image_raw", code, Severity::warning,
+          Error{cause.reason, "camera " + camera.config.name + ": " + cause.text}});
+}
+
+}  // namespace adit::agent
