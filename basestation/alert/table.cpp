@@ -33,6 +33,7 @@ constexpr std::array kRows{
     AlertRow{"not_localised_here", soon, Ends::goes_on},
     AlertRow{"sensor_refused", soon, Ends::understood},
     AlertRow{"sensor_silent", soon},
+    AlertRow{"camera_clock", soon, Ends::understood},
     AlertRow{"type_differs", soon, Ends::understood},
     AlertRow{"velocities_unread", soon, Ends::understood},
     AlertRow{"two_sources", soon, Ends::understood},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "basestation/model/camera_bytes.hpp"
 #include "basestation/model/delta.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/model/json_reader.hpp"
@@ -40,6 +41,13 @@ std::int64_t Connection::teleop(const std::string& robot) {
 
 std::int64_t Connection::photo(const std::string& id, findings::PhotoPart part) {
   send(line_of({{"id", next_}, {"photo", id}, {"part", word_of(part)}}));
+  return next_++;
+}
+
+std::int64_t Connection::camera(const CameraRequest& request) {
+  json wanted = json_of(request);
+  wanted["id"] = next_;
+  send(line_of(wanted));
   return next_++;
 }
 

@@ -8,6 +8,7 @@
 
 #include "basestation/client/line_socket.hpp"
 #include "basestation/client/options.hpp"
+#include "basestation/model/camera.hpp"
 #include "basestation/model/map_tiles.hpp"
 #include "basestation/model/outcome.hpp"
 #include "basestation/model/world.hpp"
@@ -45,6 +46,8 @@ class Connection {
   std::int64_t teleop(const std::string& robot);
   /// The stick of a teleop: m/s, m/s, rad/s.
   void stick(std::int64_t id, double vx, double vy, double wz);
+  /// Asks for the next picture of a camera; camera_picture_of() reads the outcome.
+  std::int64_t camera(const CameraRequest& request);
   /// Asks for the bytes of a part of a photo. `id`: FoundPhoto::id.
   std::int64_t photo(const std::string& id, findings::PhotoPart part);
   void cancel(std::int64_t id);

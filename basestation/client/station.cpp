@@ -102,6 +102,10 @@ Station::RequestId Station::photo(const std::string& id, findings::PhotoPart par
   return ask([id, part](Connection& connection) { return connection.photo(id, part); }, std::move(done));
 }
 
+Station::RequestId Station::camera(const CameraRequest& request, Done done) {
+  return ask([request](Connection& connection) { return connection.camera(request); }, std::move(done));
+}
+
 Station::RequestId Station::drive(const std::string& robot, Done done) {
   return ask([robot](Connection& connection) { return connection.teleop(robot); }, std::move(done));
 }

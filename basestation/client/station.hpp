@@ -80,6 +80,8 @@ class Station {
 
   /// Runs a command line of the grammar.
   RequestId execute(const std::string& line, Done done);
+  /// Asks for the next picture of a camera; camera_picture_of() reads the outcome.
+  RequestId camera(const CameraRequest& request, Done done);
   /// Asks for the bytes of a part of a photo; photo_of() reads the outcome. `id`: FoundPhoto::id.
   RequestId photo(const std::string& id, findings::PhotoPart part, Done done);
   /// Drives a robot by a stick until cancelled; zero is sent if the stick is not renewed for 0.25 s.

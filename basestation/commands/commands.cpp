@@ -76,7 +76,7 @@ bool shares_robots(const Request& one, const Request& other) {
 }  // namespace
 
 Commands::Commands(const StationParams& params, Executor& strand, wire::Participant& radio, Fleet& fleet,
-                   Presence& presence, Content& content, Random& random)
+                   Presence& presence, Content& content, Cameras& cameras, Random& random)
     : params_(params),
       strand_(strand),
       fleet_(fleet),
@@ -88,7 +88,9 @@ Commands::Commands(const StationParams& params, Executor& strand, wire::Particip
               radio, fleet),
       stick_(params.id, strand, radio, fleet),
       maps_(params, strand, fleet, content),
-      findings_(params, strand, fleet, content) {
+      findings_(params, strand, fleet, content),
+      cameras_(cameras),
+      camera_commands_(strand, cameras) {
   sender_.on_late = [this](const Answer& answer) { late_stop(answer); };
 }
 
@@ -194,6 +196,7 @@ void Commands::run(std::uint64_t handle, const Request& request, Done done) {
     return refuse(request, Reason::no_station, std::string(describe(Reason::no_station)), done);
   if (request.verb == verb("down")) return down(request, done);
   if (request.info->first_word() == "finding") return findings_.run(request, done);
+  if (request.info->first_word() == "camera") return camera_commands_.run(request, done);
   if (request.verb == verb("stop") && request.all) return stop_all(request, done);
   if (request.verb == verb("convoy start")) return start_convoy(handle, request, std::move(done));
   if (request.verb == verb("convoy stop")) return stop_convoy(handle, request, done);
@@ -203,6 +206,7 @@ void Commands::run(std::uint64_t handle, const Request& request, Done done) {
 
 void Commands::answer_query(const Request& request, const Done& done) {
   if (request.info->first_word() == "map") return maps_.run(request, done);
+  if (request.verb == verb("cameras")) return done(cameras_outcome(request, fleet_, cameras_));
   const Time now = strand_.now();
   const Outcome outcome =
       query_outcome(request, {params_, fleet_, sender_.counts(), content_, now - started_, now});

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "basestation/commands/camera_commands.hpp"
 #include "basestation/commands/finding_commands.hpp"
 #include "basestation/commands/gather.hpp"
 #include "basestation/commands/map_commands.hpp"
@@ -26,7 +27,7 @@ class Commands {
 
   /// `random`: draws the ids of convoys.
   Commands(const StationParams& params, Executor& strand, wire::Participant& radio, Fleet& fleet,
-           Presence& presence, Content& content, Random& random);
+           Presence& presence, Content& content, Cameras& cameras, Random& random);
 
   /// Runs a parsed command line, at once or later, and calls `done` once. Returns a handle for cancel() and
   /// stick(). Wrong lines, and those that need a terminal, are refused with wrong usage.
@@ -103,6 +104,8 @@ class Commands {
   Stick stick_;
   MapCommands maps_;
   FindingCommands findings_;
+  Cameras& cameras_;
+  CameraCommands camera_commands_;
   std::deque<Waiting> waiting_{};  ///< In the order in which they were given.
   Flows flows_{};
   /// Each a `stop all` of a station that was just started and has not heard all robots yet.

@@ -105,6 +105,11 @@ Result<void> Content::take(const PieceReader::Piece& piece, PieceReader::Stored 
   if (from_station_ && has_findings)
     return desk_.hear_station(piece.robot, *from_station_, piece.data, std::move(stored));
   if (from_station_) return {Reason::malformed, "a station sends marks and their photos only"};
+  if (piece.kind == static_cast<std::uint8_t>(transfer::Kind::shots)) {
+    Result<void> taken = on_shot ? on_shot(piece.robot, piece.data) : Result<void>();
+    if (taken) stored();
+    return taken;
+  }
   if (has_findings) return desk_.hear(piece.robot, piece.data, std::move(stored));
   return map_.take(piece.robot, piece.kind, piece.waiting, piece.data, std::move(stored));
 }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "basestation/content/digest_list.hpp"
@@ -66,6 +67,8 @@ class Content {
   const ChunkStore& chunks() const { return map_.chunks(); }
 
   std::shared_ptr<const perception::VoxelImage> prior{};  ///< What the crew had before; null: nothing.
+  /// Takes a piece of a single picture that a robot's camera took; empty: none is taken.
+  std::function<Result<void>(const std::string& robot, std::span<const std::uint8_t> bytes)> on_shot{};
   std::function<void()> on_findings{};  ///< Called when finding_counts() changed; may be empty.
 
  private:

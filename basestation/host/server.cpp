@@ -16,6 +16,7 @@
 #include <filesystem>
 
 #include "basestation/client/connection.hpp"
+#include "basestation/model/camera_bytes.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/model/json_reader.hpp"
 #include "basestation/model/outcome.hpp"
@@ -266,6 +267,22 @@ void Server::ask_photo(std::uint64_t number, Client& client, std::int64_t id, co
   if (!posted) reply(busy("the station has too much to do"));
 }
 
+void Server::ask_camera(std::uint64_t number, Client& client, std::int64_t id, const CameraRequest& wanted) {
+  client.open[id] = std::make_shared<std::uint64_t>(0);
+  const auto reply = [this, number, id](const json& outcome) {
+    hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", outcome}}});
+  };
+  const bool posted = strand_->post([this, reply, wanted] {
+    Cameras& cameras = station_->cameras();
+    if (const auto looked = cameras.look(wanted.robot, wanted.camera, wanted.width, wanted.rate); !looked)
+      return reply(json_of(failed_outcome(kExitRefused, looked.error())));
+    cameras.next(wanted.robot, wanted.camera, wanted.after, [reply](const CameraPicture& picture) {
+      reply(json_of(Outcome{.json = camera_json(picture)}));
+    });
+  });
+  if (!posted) reply(busy("the station has too much to do"));
+}
+
 void Server::handle(std::uint64_t number, Client& client, const std::string& text) {
   const json request = json::parse(text, nullptr, false);
   const auto wrong = [&](const std::string& why) { answer(client, {{"wrong", why}}); };
@@ -322,12 +339,16 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& tex
       strand_->post([station = station_, h = found->second, velocity] { station->stick(*h, velocity); });
     return;
   }
-  if (!in.has("do") && !in.has("teleop") && !in.has("photo"))
+  if (!in.has("do") && !in.has("teleop") && !in.has("photo") && !in.has("camera"))
     return wrong("no request that this version knows");
   if (in.has("teleop") && !command::valid_name(robot)) return wrong("teleop wants a robot's name");
   if (client.open.contains(id)) return wrong("the id is in use");
   if (client.open.size() >= kMaxOpen)
     return answer(client, {{"id", id}, {"outcome", busy("this program asks for too much at once")}});
+  if (in.has("camera")) {
+    const auto wanted = camera_request_from(request);
+    return wanted ? ask_camera(number, client, id, *wanted) : wrong(wanted.error().text);
+  }
   if (in.has("photo")) return ask_photo(number, client, id, photo, part);
   begin(number, client, id, line, robot);
 }

@@ -12,6 +12,7 @@
 
 #include "basestation/client/line_socket.hpp"
 #include "basestation/host/outbox.hpp"
+#include "basestation/model/camera.hpp"
 #include "basestation/model/delta.hpp"
 #include "basestation/model/notice.hpp"
 #include "basestation/model/world.hpp"
@@ -34,6 +35,10 @@ namespace adit::station::host {
 ///                                      -> {"id": 3, "outcome": {...}} with the bytes
 ///                                      (model/photo_bytes.hpp); `part` may also be "thumbnail"; `HASH`:
 ///                                      FoundPhoto::id
+///     {"id": 4, "camera": "front", "robot": "r1", "width": 640, "rate": 15, "after": N}
+///                                      -> {"id": 4, "outcome": {...}} with the next picture after number N
+///                                      (model/camera_bytes.hpp), or none within a second. The camera is
+///                                      looked at for 3 s from each such request
 ///     {"hello": true}                  -> {"hello": {...}}
 ///     {"front_end": "watch", "folder": "/home/op"}
 ///                                      names the client for the others; files in its lines are relative to
@@ -112,6 +117,8 @@ class Server {
   /// Answers the client's request `id` for a part of a photo.
   void ask_photo(std::uint64_t number, Client& client, std::int64_t id, const std::string& photo,
                  const std::string& part);
+  /// Answers the client's request `id` for the next picture of a camera.
+  void ask_camera(std::uint64_t number, Client& client, std::int64_t id, const CameraRequest& wanted);
   /// Queues an answer; a client with too many unread ones is cut off.
   void answer(Client& client, const nlohmann::json& object);
   void hand_over(Reply reply);

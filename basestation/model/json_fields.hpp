@@ -61,6 +61,18 @@ void fields(Io& io, Of<Io, Size>& size) {
 }
 
 template <class Io>
+void fields(Io& io, Of<Io, CameraStatus>& camera) {
+  io.field("name", camera.name);
+  io.field("on", camera.on);
+  io.field("kept_on", camera.kept_on);
+  io.field("width", camera.width);
+  io.field("height", camera.height);
+  io.field("age", camera.age);
+  io.field("rate", camera.rate);
+  io.field("bytes", camera.bytes);
+}
+
+template <class Io>
 void place_fields(Io& io, Of<Io, Robot>& robot) {
   if constexpr (Io::kReads) robot.located = io.has("pose");
   if (!Io::kReads && !robot.located) return;
@@ -118,6 +130,7 @@ void fields(Io& io, Of<Io, Robot>& robot) {
   place_fields(io, robot);
   if (Io::kReads || robot.goal_state != GoalState::none) io.field("goal", robot.goal);
   if (Io::kReads || !robot.route.points.empty()) io.field("route", robot.route);
+  if (Io::kReads || !robot.cameras.empty()) io.field("cameras", robot.cameras);
   io.field("areas", robot.areas);
   if (Io::kReads || robot.exploration.phase != ExplorationPhase::none)
     io.field("exploration", robot.exploration);

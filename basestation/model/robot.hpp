@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "basestation/model/camera.hpp"
 #include "core/contract/common.hpp"
 #include "core/contract/robot.hpp"
 
@@ -58,6 +59,7 @@ struct Robot : contract::RobotState, contract::BehaviourState {
   std::vector<std::string> stops{};  ///< Stations that set a software stop.
   bool stopped_by_holder{};          ///< One of them is the holder.
 
+  std::vector<CameraStatus> cameras{};  ///< As it names them.
   contract::Route route{};
   std::vector<std::string> troubles{};  ///< Components that do not work, with their state.
 };

@@ -30,7 +30,8 @@ Station::Station(StationParams params, Executor& strand, wire::Participant& radi
       random_(params_.seed),
       presence_(params_, strand, radio, fleet_, random_),
       content_(params_, strand, radio, fleet_, presence_),
-      commands_(params_, strand, radio, fleet_, presence_, content_, random_),
+      cameras_(params_, strand, radio, fleet_, presence_),
+      commands_(params_, strand, radio, fleet_, presence_, content_, cameras_, random_),
       map_view_(strand, content_.chunks(), content_.prior) {}
 
 template <class T, class Take>
@@ -83,6 +84,10 @@ void Station::observe() {
     presence_.announce_often();
   };
   content_.on_findings = [this] { changed(); };
+  content_.on_shot = [this](const std::string& robot, std::span<const std::uint8_t> bytes) {
+    return cameras_.take_shot(robot, bytes);
+  };
+  cameras_.on_change = [this] { changed(); };
   commands_.on_answer = [this] { changed(); };
   commands_.on_down = [this] {
     if (on_down) on_down();
@@ -95,6 +100,8 @@ StairsReport Station::stairs() const {
 
 World Station::world() const {
   World world = world_of(fleet_, now());
+  for (Robot& robot : world.robots)
+    if (const RobotView* view = fleet_.robot(robot.name)) robot.cameras = cameras_.status(*view);
   world.link = params_.link;
   world.commands = counts();
   world.findings = content_.finding_counts();
@@ -117,6 +124,7 @@ void Station::tick() {
     if (robot.located) radio_.set_place(robot.participant, {robot.x, robot.y, robot.z});
   content_.acknowledge();
   content_.send_marks();
+  cameras_.tick();
   commands_.tick();
 }
 

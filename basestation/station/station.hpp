@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "basestation/camera/cameras.hpp"
 #include "basestation/commands/commands.hpp"
 #include "basestation/content/content.hpp"
 #include "basestation/fleet/presence.hpp"
@@ -77,6 +78,9 @@ class Station {
   const store::Bytes* photo(std::uint64_t content, findings::PhotoPart part) const {
     return content_.photos().find(content, part);
   }
+  /// The cameras of all robots.
+  Cameras& cameras() { return cameras_; }
+  const Cameras& cameras() const { return cameras_; }
   /// The staircases of the map, computed from all findings.
   StairsReport stairs() const;
   /// True after `down`, until `up`.
@@ -104,6 +108,7 @@ class Station {
   Random random_;
   Presence presence_;
   Content content_;
+  Cameras cameras_;
   Commands commands_;
   MapView map_view_;
   bool change_pending_{false};  ///< on_changed will be called.

@@ -32,6 +32,8 @@ inline constexpr Argument kFile{.name = "FILE", .type = Type::file, .what = "a f
 /// A finding, by the number that `findings` shows.
 inline constexpr Argument kFinding{
     .name = "N", .type = Type::number, .what = "the number of a finding", .minimum = 1.0, .maximum = 1e9};
+/// A camera of a robot, which may be left out.
+inline constexpr Argument kCamera{.name = "NAME", .type = Type::name, .what = "a camera", .min_count = 0};
 /// Words of free text, which may be left out.
 inline constexpr Argument kText{
     .name = "TEXT", .type = Type::text, .what = "a text", .min_count = 0, .max_count = 64};
@@ -160,6 +162,24 @@ inline constexpr std::array kTable{
                 .summary = "confirm or reject a finding, or take that back",
                 .details = "N as in `findings`; stored at this station, also over its restart",
                 .example = "finding 3 confirm"},
+    CommandInfo{.name = "cameras",
+                .arguments = {kMaybeRobots},
+                .runs = Runs::query,
+                .summary = "cameras of robots, and the pictures that arrive of them",
+                .example = "cameras r1"},
+    CommandInfo{.name = "camera shot",
+                .arguments = {kRobot, Argument{.name = "shot", .type = Type::keyword}, kFile, kCamera},
+                .runs = Runs::station,
+                .summary = "take one good picture and write it to a file, .jpg",
+                .details = "needs no authority; it comes when the link has room, over a thin link in minutes",
+                .example = "camera r1 shot door.jpg"},
+    CommandInfo{
+        .name = "camera",
+        .arguments = {kRobot, Argument{.name = "STATE", .type = Type::choice, .choices = "on|off"}, kCamera},
+        .runs = Runs::station,
+        .summary = "ask a robot for live pictures of a camera, or end that",
+        .details = "needs no authority; without NAME the robot's first camera; size and rate follow the link",
+        .example = "camera r1 on front"},
     CommandInfo{.name = "stairs",
                 .runs = Runs::query,
                 .summary = "staircases that robots found, and which robots may climb them",
