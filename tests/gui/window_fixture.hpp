@@ -16,6 +16,9 @@ class FakeSink : public CommandSink {
     queries.push_back(line);
     asked.emplace_back(line, std::move(done));
   }
+  void camera(const station::CameraRequest& request, Done done) override {
+    cameras.push_back({request, std::move(done)});
+  }
   void photo(const std::string& id, findings::PhotoPart part, Done done) override {
     photos.push_back({id, part, std::move(done)});
   }
@@ -31,6 +34,11 @@ class FakeSink : public CommandSink {
   std::vector<Done> pending{};
   std::vector<std::string> queries{};
   std::vector<std::pair<std::string, Done>> asked{};  ///< Queries without an answer.
+  struct AskedCamera {
+    station::CameraRequest request{};
+    Done done{};
+  };
+  std::vector<AskedCamera> cameras{};  ///< Pictures of cameras that were asked for.
   struct AskedPhoto {
     std::string id{};
     findings::PhotoPart part{};

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "basestation/model/camera.hpp"
 #include "basestation/model/map_tiles.hpp"
 #include "basestation/model/outcome.hpp"
 #include "core/findings/photo_file.hpp"
@@ -21,6 +22,8 @@ class CommandSink {
   virtual void execute(const std::string& line, Done done) = 0;
   /// Asks the station by a command line that changes nothing.
   virtual void query(const std::string& line, Done done) = 0;
+  /// Asks for the next picture of a camera; station::camera_picture_of() reads the outcome.
+  virtual void camera(const station::CameraRequest& request, Done done) = 0;
   /// Asks the station for the bytes of a part of a photo; station::photo_of() reads the outcome. `id`:
   /// FoundPhoto::id.
   virtual void photo(const std::string& id, findings::PhotoPart part, Done done) = 0;

@@ -47,7 +47,8 @@ Control::Control(CommandSink& sink, QObject* parent)
           this),
       refusals_({"row", "label", "names", "why", "cureLabel", "cureLine", "cureHold"}, this),
       log_({"row", "time", "kind", "who", "line"}, this),
-      tabs_(sink, log_, this) {
+      tabs_(sink, log_, this),
+      feeds_(sink, this) {
   connect(&tabs_, &TabState::ordered, this, &Control::order_of_tab);
   connect(&tabs_, &TabState::place_wanted, this, &Control::look_at);
   connect(&tabs_, &TabState::remark, this, &Control::add_remark);

@@ -15,6 +15,7 @@
 #include "basestation/gui/bridge/action_bar.hpp"
 #include "basestation/gui/bridge/area_tool.hpp"
 #include "basestation/gui/bridge/attention_list.hpp"
+#include "basestation/gui/bridge/camera_feeds.hpp"
 #include "basestation/gui/bridge/command_line.hpp"
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/detail_list.hpp"
@@ -52,6 +53,7 @@ class Control : public QObject {
   Q_PROPERTY(adit::gui::MarkTool* mark READ mark CONSTANT)
   Q_PROPERTY(adit::gui::AttentionList* attention READ attention CONSTANT)
   Q_PROPERTY(adit::gui::DetailList* details READ details CONSTANT)
+  Q_PROPERTY(adit::gui::CameraFeeds* feeds READ feeds CONSTANT)
   Q_PROPERTY(adit::gui::DriveControl* drive READ drive CONSTANT)
   Q_PROPERTY(adit::gui::CommandLine* commandLine READ command_line CONSTANT)
   Q_PROPERTY(QString stopText READ stop_text NOTIFY shown)
@@ -151,6 +153,7 @@ class Control : public QObject {
   QAbstractItemModel* refusals() { return &refusals_; }
   QAbstractItemModel* log() { return &log_; }
   TabState* tabs() { return &tabs_; }
+  CameraFeeds* feeds() { return &feeds_; }
   QString operator_name() const { return text_of(world_->station); }
   QString link() const { return text_of(world_->link); }
   int robot_count() const { return static_cast<int>(world_->robots.size()); }
@@ -240,6 +243,7 @@ class Control : public QObject {
   std::map<std::string, QString> states_{};  ///< Of buttons: sent, done or refused.
   RowModel robots_, buttons_, refusals_, log_;
   TabState tabs_;
+  CameraFeeds feeds_;
   qint64 next_row_{1};
   int mine_{}, lost_{}, stopped_{};
   AreaTool area_{*this};

@@ -305,6 +305,12 @@ std::span<const Control::KeyRow> Control::keys() {
       KeyRow{Qt::Key_PageUp, 0, false, [](Control& c) { emit c.cut_moved(1); }},
       KeyRow{Qt::Key_PageDown, 0, false, [](Control& c) { emit c.cut_moved(-1); }},
       KeyRow{Qt::Key_I, 0, false, [](Control& c) { c.details_.set_open(!c.details_.is_open()); }},
+      KeyRow{Qt::Key_C, 0, false,
+             [](Control& c) {
+               const bool shown = c.details_.is_open() && c.details_.camera_on();
+               c.details_.set_camera_on(!shown);
+               if (!shown) c.details_.set_open(true);
+             }},
       KeyRow{Qt::Key_Return, 0, false, [](Control& c) { c.confirm(); }},
       KeyRow{Qt::Key_Enter, 0, false, [](Control& c) { c.confirm(); }},
       KeyRow{Qt::Key_Escape, 0, false, [](Control& c) { c.take_back(); }},

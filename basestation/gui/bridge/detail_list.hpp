@@ -2,6 +2,7 @@
 #pragma once
 #include <QtQml/qqmlregistration.h>
 #include <QObject>
+#include <QStringList>
 #include <vector>
 
 #include "basestation/gui/bridge/details.hpp"
@@ -17,6 +18,13 @@ class DetailList : public QObject {
   QML_ELEMENT
   QML_UNCREATABLE("part of Control")
   Q_PROPERTY(QAbstractItemModel* rows READ rows CONSTANT)
+  /// The robot of which pictures can be shown: the selected one, if it has a camera; else empty.
+  Q_PROPERTY(QString cameraRobot READ camera_robot NOTIFY cameras_changed)
+  Q_PROPERTY(QStringList cameras READ cameras NOTIFY cameras_changed)
+  /// The camera whose pictures are shown while cameraOn; empty: the robot has none.
+  Q_PROPERTY(QString camera READ camera NOTIFY cameras_changed)
+  Q_PROPERTY(bool cameraOn READ camera_on WRITE set_camera_on NOTIFY cameras_changed)
+  Q_PROPERTY(QString cameraText READ camera_text NOTIFY cameras_changed)
   Q_PROPERTY(bool open READ is_open WRITE set_open NOTIFY open_changed)
 
  public:
@@ -32,7 +40,18 @@ class DetailList : public QObject {
   bool is_open() const { return open_; }
   void set_open(bool open);
 
+  const QString& camera_robot() const { return camera_robot_; }
+  const QStringList& cameras() const { return cameras_; }
+  const QString& camera() const { return camera_; }
+  bool camera_on() const { return camera_on_; }
+  void set_camera_on(bool on);
+  /// Size, rate and load of the pictures that arrive.
+  const QString& camera_text() const { return camera_text_; }
+  /// Shows the next camera of the robot.
+  Q_INVOKABLE void next_camera();
+
  signals:
+  void cameras_changed();
   void open_changed();
 
  private:
@@ -40,6 +59,10 @@ class DetailList : public QObject {
   std::vector<Detail> details_{};
   RowModel rows_;
   bool open_{false};
+  QString camera_robot_{}, camera_{}, camera_text_{};
+  QStringList cameras_{};
+  bool camera_on_{false};
+  void refresh_cameras();
 };
 
 }  // namespace adit::gui

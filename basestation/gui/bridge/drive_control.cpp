@@ -63,6 +63,15 @@ void DriveControl::setMode(const QString& mode) {
   if (driving()) control_.order("mode " + status_.robot + " " + mode.toStdString());
 }
 
+void DriveControl::stopRobot() {
+  if (driving()) control_.stop({status_.robot});
+}
+
+QString DriveControl::camera() const {
+  const station::Robot* robot = driving() ? control_.world().robot(status_.robot) : nullptr;
+  return robot != nullptr && !robot->cameras.empty() ? text_of(robot->cameras.front().name) : QString();
+}
+
 bool DriveControl::press(int key, int place) {
   constexpr std::array<int, 10> kDriving{Qt::Key_Up, Qt::Key_Down, Qt::Key_Left, Qt::Key_Right, Qt::Key_W,
                                          Qt::Key_A,  Qt::Key_S,    Qt::Key_D,    Qt::Key_Q,     Qt::Key_E};
@@ -71,7 +80,7 @@ bool DriveControl::press(int key, int place) {
   if (key == Qt::Key_Escape || key == Qt::Key_B) {
     letGo();
   } else if (key == Qt::Key_X) {
-    control_.stop({status_.robot});
+    stopRobot();
   } else if (drives) {
     down_[place] = key;
     send_keys();

@@ -24,6 +24,8 @@ class DriveControl : public QObject {
   Q_PROPERTY(QString measured READ measured NOTIFY changed)
   Q_PROPERTY(QString age READ age NOTIFY changed)
   Q_PROPERTY(QString why READ why NOTIFY changed)
+  /// The first camera of the driven robot; empty: it has none.
+  Q_PROPERTY(QString camera READ camera NOTIFY changed)
   Q_PROPERTY(bool good READ good NOTIFY changed)
   Q_PROPERTY(bool held READ held NOTIFY changed)
   Q_PROPERTY(bool pad READ pad NOTIFY changed)
@@ -41,6 +43,8 @@ class DriveControl : public QObject {
   /// Begins to drive that robot.
   void begin(const std::string& robot);
   Q_INVOKABLE void letGo();
+  /// Software stop of the driven robot.
+  Q_INVOKABLE void stopRobot();
   /// The stick of the screen: forward and turn to the left, [-1, 1], while a finger is on it.
   Q_INVOKABLE void touch(double forward, double turn);
   Q_INVOKABLE void release();
@@ -57,6 +61,7 @@ class DriveControl : public QObject {
 
   bool driving() const { return !status_.robot.empty(); }
   QString robot() const { return QString::fromStdString(status_.robot); }
+  QString camera() const;
   QString mode() const;
   QString asked() const;
   QString measured() const;

@@ -28,6 +28,9 @@ class QtStation : public QObject, public CommandSink, public DriveSink {
 
   void execute(const std::string& line, CommandSink::Done done) override { station_->execute(line, done); }
   void query(const std::string& line, CommandSink::Done done) override { station_->execute(line, done); }
+  void camera(const station::CameraRequest& request, CommandSink::Done done) override {
+    station_->camera(request, done);
+  }
   void photo(const std::string& id, findings::PhotoPart part, CommandSink::Done done) override {
     station_->photo(id, part, done);
   }

@@ -6,6 +6,8 @@ import Adit
 Rectangle {
     id: pane
     required property DetailList details
+    required property CameraFeeds feeds
+    readonly property bool hasCamera: details.cameraRobot !== ""
     property string title
     visible: details.open
     color: Theme.panel
@@ -32,10 +34,74 @@ Rectangle {
         spoken: "close the details"
         onFired: pane.details.open = false
     }
+    Item {
+        id: cameraArea
+        anchors.top: heading.bottom
+        x: 3 * Theme.mm
+        width: parent.width - 6 * Theme.mm
+        height: !pane.hasCamera ? 0 : pane.details.cameraOn ? width * 0.75 + 11 * Theme.mm : 11 * Theme.mm
+        visible: pane.hasCamera
+        CameraItem {
+            id: picture
+            objectName: "detailCamera"
+            visible: pane.visible && pane.hasCamera && pane.details.cameraOn
+            width: parent.width
+            height: width * 0.75
+            feeds: pane.feeds
+            robot: pane.details.cameraRobot
+            camera: pane.details.camera
+        }
+        Rectangle {
+            visible: picture.visible
+            width: parent.width
+            height: 5.5 * Theme.mm
+            color: "#b0141414"
+            PlainLabel {
+                objectName: "detailCameraCaption"
+                anchors.fill: parent
+                anchors.leftMargin: 1 * Theme.mm
+                color: picture.stale ? "#ffd27a" : "white"
+                text: picture.caption
+            }
+        }
+        PlainLabel {
+            anchors.left: parent.left
+            anchors.right: cameraSwitch.left
+            anchors.bottom: parent.bottom
+            height: 10 * Theme.mm
+            color: Theme.dim
+            text: pane.details.cameraOn ? pane.details.cameraText : pane.details.cameras.join(", ")
+        }
+        HoldButton {
+            id: cameraNext
+            objectName: "nextCamera"
+            visible: pane.details.cameraOn && pane.details.cameras.length > 1
+            anchors.right: cameraSwitch.left
+            anchors.rightMargin: 1 * Theme.mm
+            anchors.bottom: parent.bottom
+            anchors.bottomMargin: 1 * Theme.mm
+            width: 14 * Theme.mm
+            height: 9 * Theme.mm
+            text: "next"
+            spoken: "show the next camera"
+            onFired: pane.details.next_camera()
+        }
+        HoldButton {
+            id: cameraSwitch
+            objectName: "cameraSwitch"
+            anchors.right: parent.right
+            anchors.bottom: parent.bottom
+            anchors.bottomMargin: 1 * Theme.mm
+            width: 26 * Theme.mm
+            height: 9 * Theme.mm
+            text: pane.details.cameraOn ? "camera off" : "camera on"
+            onFired: pane.details.cameraOn = !pane.details.cameraOn
+        }
+    }
     PlainList {
         id: list
         objectName: "details"
-        anchors.topMargin: heading.height
+        anchors.topMargin: heading.height + cameraArea.height
         anchors.leftMargin: 3 * Theme.mm
         anchors.bottomMargin: 0
         currentIndex: -1

@@ -46,6 +46,15 @@ Rectangle {
         height: 12 * Theme.mm
         spacing: 2 * Theme.mm
         HoldButton {
+            objectName: "driveStop"
+            height: parent.height
+            width: 34 * Theme.mm
+            color: Theme.bad
+            text: "STOP " + bar.drive.robot + "  X"
+            spoken: "software stop of " + bar.drive.robot
+            onFired: bar.drive.stopRobot()
+        }
+        HoldButton {
             objectName: "driveSmart"
             height: parent.height
             active: bar.drive.mode === "smart_joystick"

@@ -60,6 +60,7 @@ Window {
         DetailPane {
             id: details
             details: window.control.details
+            feeds: window.control.feeds
             title: window.control.selectionText
             anchors.right: parent.right
             anchors.top: attention.bottom
@@ -100,6 +101,15 @@ Window {
             width: parent.width
             height: 16 * Theme.mm
             anchors.bottom: outcome.top
+        }
+        DriveCamera {
+            drive: window.control.drive
+            feeds: window.control.feeds
+            visible: window.control.drive.driving && window.control.drive.camera !== ""
+            anchors.top: map.top
+            anchors.right: map.right
+            anchors.margins: 2 * Theme.mm
+            width: Math.min(map.width * 0.55, (map.height - 4 * Theme.mm) * 4 / 3)
         }
         DriveBar {
             drive: window.control.drive
