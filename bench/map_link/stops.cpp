@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long stops take while robots send their map, against the same rehearsal in which they make none.
+// How long stops take while robots send their map, or live pictures, against the same rehearsal without.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -30,18 +30,20 @@ constexpr double kPeriod = 1.0;  // s between two stops.
 constexpr int kStopsInRun = 100;
 
 /// Three robots explore; one after the other is stopped, and goes on.
-std::string scenario_text(const std::string& link, bool map) {
+std::string scenario_text(const std::string& link, bool with, bool camera) {
   std::string out = fmt::format(
       "world: {{generate: blocks, size: 4}}\nodometry: {{noise: 0}}\nduration: {}\nlink: {}\nperception: "
       "{}\nrobots:\n",
-      kFirst + kPeriod * (kStopsInRun + 10), link, map ? "slam" : "odometry");
+      kFirst + kPeriod * (kStopsInRun + 10), link, with && !camera ? "slam" : "odometry");
   for (int i = 1; i <= kRobots; ++i)
-    out += fmt::format("  - {{id: r{}, platform: wheeled, pose: [{}, 1.6, 0]}}\n", i, 1.6 * i);
+    out += fmt::format("  - {{id: r{}, platform: wheeled, pose: [{}, 1.6, 0]{}}}\n", i, 1.6 * i,
+                       camera ? ", camera: {}" : "");
   out += "basestations:\n  - {id: op1, pose: [1.6, 1.6]}\nscript:\n";
   std::vector<std::pair<double, std::string>> lines;
   for (int i = 1; i <= kRobots; ++i) {
     lines.emplace_back(30.0 + 0.5 * i, fmt::format("take r{}", i));
     lines.emplace_back(33.0 + 0.5 * i, fmt::format("explore r{}", i));
+    if (camera && with) lines.emplace_back(36.0 + 0.5 * i, fmt::format("camera r{} on", i));
   }
   for (int n = 0; n < kStopsInRun; ++n) {
     const double at = kFirst + kPeriod * n;
@@ -109,15 +111,14 @@ struct Measured {
   std::uint64_t bytes{};                   ///< Of pieces of maps and their acknowledgements.
 };
 
-Result<Measured> measure(const std::string& link, bool map, int runs, std::uint64_t seed) {
+Result<Measured> measure(const std::string& link, bool with, bool camera, int runs, std::uint64_t seed) {
   Measured out;
   const auto beside =
       config::find_file("scenarios/demo.yaml");  // Links and platforms are looked for beside it.
   if (!beside) return beside.error();
   for (int n = 0; n < runs; ++n) {
-    std::fprintf(stderr, "%s, %s: run %d of %d\n", link.c_str(), map ? "with the map" : "without", n + 1,
-                 runs);
-    const auto scenario = parse_scenario(scenario_text(link, map), *beside);
+    std::fprintf(stderr, "%s, %s: run %d of %d\n", link.c_str(), with ? "with" : "without", n + 1, runs);
+    const auto scenario = parse_scenario(scenario_text(link, with, camera), *beside);
     if (!scenario) return scenario.error();
     const auto world = make_world(scenario->world);
     if (!world) return world.error();
@@ -147,8 +148,10 @@ void print(const std::string& link, const char* what, const std::vector<double>&
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "What a stop takes while three exploring robots send their map, against the same without a map.\n"
-      "Example: bench_map_link_stops --stops 1000 --link mesh_100k"};
+      "What a stop takes while three exploring robots send their map, or with --camera live pictures, "
+      "against "
+      "the same without.\n"
+      "Example: bench_map_link_stops --stops 1000 --link mesh_100k --camera"};
   int stops = 1000;
   std::uint64_t seed = 1;
   std::vector<std::string> links{"mesh_500k", "mesh_100k"};
@@ -156,22 +159,27 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 100'000));
   app.add_option("--seed", seed, "of the first run (default 1)");
   app.add_option("--link", links, "profiles of links (default mesh_500k and mesh_100k)");
+  bool camera = false;
+  app.add_flag("--camera", camera, "with live pictures of each robot in place of the map");
   CLI11_PARSE(app, argc, argv);
   const int runs = (stops + kStopsInRun - 1) / kStopsInRun;
-  fmt::print("Milliseconds from the first time that a stop was written, with / without the map.\n\n");
+  fmt::print("Milliseconds from the first time that a stop was written, with / without {}.\n\n",
+             camera ? "live pictures" : "the map");
   fmt::print("| link | stop | stops | median | p99 | max | p99 with / without (<= 1.1) |\n");
   fmt::print("| --- | --- | --- | --- | --- | --- | --- |\n");
   std::string sent;
   for (const std::string& link : links) {
-    const auto with = measure(link, true, runs, seed), without = measure(link, false, runs, seed);
+    const auto with = measure(link, true, camera, runs, seed);
+    const auto without = measure(link, false, camera, runs, seed);
     if (!with || !without) {
       std::fprintf(stderr, "bench_map_link_stops: %s\n", (with ? without : with).error().text.c_str());
       return 1;
     }
     print(link, "at the robot", with->came, without->came);
     print(link, "answered", with->answered, without->answered);
-    sent += fmt::format("{}: {:.1f} kB of map and acknowledgements in a run\n", link,
-                        static_cast<double>(with->bytes) / runs / 1e3);
+    if (!camera)
+      sent += fmt::format("{}: {:.1f} kB of map and acknowledgements in a run\n", link,
+                          static_cast<double>(with->bytes) / runs / 1e3);
     std::fflush(stdout);
   }
   fmt::print("\n{}", sent);

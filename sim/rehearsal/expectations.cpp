@@ -65,6 +65,12 @@ std::string mismatch(const FindingsExpectation& e, const Evidence& evidence) {
   return count == *e.photos ? std::string() : "it has " + std::to_string(count) + " whole photos";
 }
 
+std::string mismatch(const PicturesExpectation& e, const Evidence& evidence) {
+  const auto it = evidence.pictures.find(e.by);
+  if (it == evidence.pictures.end()) return "the station does not run";
+  return it->second >= e.least ? std::string() : "it got " + std::to_string(it->second);
+}
+
 std::string percent(const char* what, double share) {
   char text[64];
   std::snprintf(text, sizeof text, "%s %.1f %%", what, 100 * share);
@@ -281,6 +287,8 @@ void Expectations::judge(Duration now, const Evidence& evidence) {
     if (const auto* near = std::get_if<NearExpectation>(&e.what)) found = mismatch(*near, evidence);
     if (const auto* answer = std::get_if<AnswerExpectation>(&e.what)) found = mismatch(*answer, evidence);
     if (const auto* desk = std::get_if<FindingsExpectation>(&e.what)) found = mismatch(*desk, evidence);
+    if (const auto* pictures = std::get_if<PicturesExpectation>(&e.what))
+      found = mismatch(*pictures, evidence);
     if (const auto* explored = std::get_if<ExploredExpectation>(&e.what))
       found = mismatch(*explored, evidence);
     if (const auto* repeat = std::get_if<RepeatExpectation>(&e.what)) found = mismatch(*repeat, evidence);

@@ -25,9 +25,10 @@ struct Evidence {
   std::function<bool(const std::string& robot, Reason reason)> reported{};
   /// How right the map of that operator's station is; nothing while it has none.
   std::function<std::optional<MapJudgement>(const std::string& by)> map{};
-  std::map<std::string, Reason> last_answer{};    ///< By operator.
-  std::map<std::string, std::size_t> findings{};  ///< By operator whose station runs.
-  std::map<std::string, std::size_t> photos{};    ///< Whole ones, by operator whose station runs.
+  std::map<std::string, Reason> last_answer{};      ///< By operator.
+  std::map<std::string, std::size_t> findings{};    ///< By operator whose station runs.
+  std::map<std::string, std::uint64_t> pictures{};  ///< Live ones, by operator whose station runs.
+  std::map<std::string, std::size_t> photos{};      ///< Whole ones, by operator whose station runs.
 };
 
 /// Judges a scenario's expectations as time goes on.

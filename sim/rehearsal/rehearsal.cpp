@@ -252,7 +252,10 @@ class Run {
     for (const auto& [id, station] : stations_) {
       if (const auto answer = station->last_answer()) out.last_answer[id] = *answer;
       if (const auto findings = station->findings()) out.findings[id] = *findings;
-      if (const station::Station* running = station->station()) out.photos[id] = running->photos();
+      if (const station::Station* running = station->station()) {
+        out.photos[id] = running->photos();
+        out.pictures[id] = running->cameras().pictures();
+      }
     }
     return out;
   }

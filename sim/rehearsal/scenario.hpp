@@ -97,6 +97,11 @@ struct FindingsExpectation {
   std::size_t findings{};
   std::optional<std::size_t> photos{};
 };
+/// That many live pictures of cameras arrived at a station since it started, of all robots.
+struct PicturesExpectation {
+  std::string by{};
+  std::uint64_t least{};
+};
 /// The order of a convoy, as every member says.
 struct ConvoyExpectation {
   std::vector<std::string> order{};
@@ -174,7 +179,7 @@ struct Expectation {
   std::variant<StateExpectation, NearExpectation, AnswerExpectation, FindingsExpectation, NoCollision,
                ExploredExpectation, RepeatExpectation, AtLeast, ConvoyExpectation, InLineExpectation,
                GapExpectation, StillExpectation, NoticeExpectation, PlaceExpectation, MapExpectation,
-               PoseWithinExpectation, ReasonExpectation, ProgressExpectation>
+               PoseWithinExpectation, ReasonExpectation, ProgressExpectation, PicturesExpectation>
       what{};
   int line{};          ///< In the scenario file.
   std::string text{};  ///< As written.

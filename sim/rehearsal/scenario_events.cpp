@@ -171,6 +171,10 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
                              {}};
     if (node.has("photos")) desk.photos = static_cast<std::size_t>(node.integer("photos", 0, 65536));
     out.what = desk;
+  } else if (node.has("pictures_at_least")) {
+    out.what =
+        PicturesExpectation{read_station(node, "by_operator", scenario),
+                            static_cast<std::uint64_t>(node.integer("pictures_at_least", 0, 1'000'000))};
   } else if (node.has("map_at_least") || node.has("map_wrong_at_most")) {
     MapExpectation map{.by = read_station(node, "by_operator", scenario)};
     if (node.has("map_at_least")) map.share = node.number("map_at_least", config::within(0.0, 1.0));
