@@ -73,10 +73,22 @@ TEST(Theme, InkCanBeReadOnEveryFill) {
 
 TEST(Theme, MarksStandOutFromTheMap) {
   for (const Rgb fill : kTokens)
-    for (const Rgb ground : {kDark.ground, kDark.floor})
+    for (const Rgb ground : {kDark.ground, kDark.unknown, kDark.floor})
       EXPECT_GE(contrast(fill, ground), 3.0) << std::hex << fill;
   // In the light theme their outline does.
-  for (const Rgb ground : {kLight.ground, kLight.floor, kLight.panel}) EXPECT_GE(contrast(kInk, ground), 3.0);
+  for (const Rgb ground : {kLight.ground, kLight.unknown, kLight.floor, kLight.panel})
+    EXPECT_GE(contrast(kInk, ground), 3.0);
+}
+
+TEST(Theme, FreeUnknownClutterAndWallsOfTheMapDiffer) {
+  for (const Palette& palette : {kDark, kLight}) {
+    EXPECT_GE(contrast(palette.floor, palette.unknown), 1.5) << "free and unknown";
+    EXPECT_GE(contrast(palette.floor, palette.high), 3.0) << "free and walls";
+    EXPECT_GE(contrast(palette.floor, palette.low), 2.0) << "free and clutter";
+    EXPECT_GE(contrast(palette.unknown, palette.high), 3.0) << "unknown and walls";
+    EXPECT_GE(contrast(palette.low, palette.high), 2.0) << "clutter and walls";
+    for (const auto& sight : kSights) EXPECT_GE(delta_e(palette.low, palette.high, sight), 25.0);
+  }
 }
 
 TEST(Theme, TokensDifferForEveryKindOfSight) {

@@ -26,8 +26,9 @@ inline constexpr Rgb kInk = 0x111111;  ///< Text on a fill, and the outline of m
 /// Grounds and texts of a theme.
 struct Palette {
   Rgb ground{}, panel{}, raised{}, edge{}, text{}, dim{};
-  Rgb floor{};        ///< Cells of the map with ground.
-  Rgb low{}, high{};  ///< Cells with things: low ones and those of 2.5 m and more.
+  Rgb unknown{};      ///< Where the map shows nothing.
+  Rgb floor{};        ///< Cells of the map with ground: free.
+  Rgb low{}, high{};  ///< Cells with things up to 0.6 m, and from 1.4 m: clutter and walls, of another hue.
 };
 inline constexpr Palette kDark{.ground = 0x15181C,
                                .panel = 0x1E2329,
@@ -35,18 +36,20 @@ inline constexpr Palette kDark{.ground = 0x15181C,
                                .edge = 0x46515B,
                                .text = 0xF1F3F4,
                                .dim = 0xAEB7BF,
-                               .floor = 0x29313A,
-                               .low = 0x5C6B7A,
-                               .high = 0x9FB0C0};
+                               .unknown = 0x0A0C0F,
+                               .floor = 0x2D3945,
+                               .low = 0x9A7B52,
+                               .high = 0xD3DEE8};
 inline constexpr Palette kLight{.ground = 0xF5F6F7,
                                 .panel = 0xFFFFFF,
                                 .raised = 0xE1E5E8,
                                 .edge = 0x9AA4AD,
                                 .text = 0x15181C,
                                 .dim = 0x48525B,
-                                .floor = 0xDFE4E8,
-                                .low = 0x93A0AC,
-                                .high = 0x52606D};
+                                .unknown = 0xC6CDD4,
+                                .floor = 0xFFFFFF,
+                                .low = 0xB08B57,
+                                .high = 0x36424E};
 
 constexpr Rgb colour(Token token, const Palette& palette) {
   if (token == Token::text) return palette.text;

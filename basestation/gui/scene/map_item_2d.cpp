@@ -17,7 +17,8 @@ using station::MapTile;
 
 constexpr QRgb kGhostAlpha = 38;  // Of what is on other floors: 15 %.
 constexpr int kBudgetMs = 20;     // For new pictures in one frame.
-constexpr double kHigh = 2.5;     // Height from which things have the last colour, m.
+constexpr double kClutter = 0.6;  // Height up to which things have the colour of low ones, m.
+constexpr double kWall = 1.4;     // Height from which they have that of walls, m.
 
 }  // namespace
 
@@ -31,7 +32,8 @@ QImage image_of(const MapTile& tile, double resolution, const Palette& palette,
   plain[MapTile::kGround] = palette.floor;
   for (std::size_t n = MapTile::kThing; n < plain.size(); ++n) {
     const double height = static_cast<double>(n - 1) * resolution;
-    plain[n] = mixed(palette.low, palette.high, std::clamp(height / kHigh, 0.0, 1.0));
+    const double share = (height - kClutter) / (kWall - kClutter);
+    plain[n] = mixed(palette.low, palette.high, std::clamp(share, 0.0, 1.0));
   }
   std::array<QRgb, 256> colours{};
   std::vector<std::uint8_t> sliced;
@@ -118,7 +120,7 @@ void MapItem2D::draw_grid(QPainter& painter) const {
 
 void MapItem2D::paint(QPainter* painter) {
   const Theme& theme = Theme::instance();
-  painter->fillRect(QRectF(0, 0, width(), height()), theme.ground());
+  painter->fillRect(QRectF(0, 0, width(), height()), QColor::fromRgb(theme.palette().unknown));
   if (light_ != theme.light()) pictures_.clear();
   light_ = theme.light();
   pending_ = false;

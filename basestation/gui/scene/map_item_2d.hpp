@@ -14,8 +14,8 @@
 
 namespace adit::gui {
 
-/// The picture of a tile: things brighter the higher, unknown cells transparent; north is up. With a floor,
-/// what is on others is a ghost.
+/// The picture of a tile: clutter and walls in hues of their own, unknown cells transparent; north is up.
+/// With a floor, what is on others is a ghost.
 QImage image_of(const station::MapTile& tile, double resolution, const Palette& palette,
                 const std::optional<Floor>& floor = std::nullopt);
 
