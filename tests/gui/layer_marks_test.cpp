@@ -128,9 +128,14 @@ TEST(Ribbons, FromTheSideHaveTheEdgesOfTheirTreads) {
   const Projection from_south = [](const Point3& place) { return Point{10 * place.x, -10 * place.z}; };
   const MarkList marks =
       layer_marks({.stairs = &stairs, .picked = 7, .project = from_south, .from_side = true});
-  ASSERT_EQ(marks.shapes.size(), 7U);
-  EXPECT_NEAR(marks.shapes[1].points[0].y, -2, 1e-9) << "the first tread";
-  EXPECT_NEAR(marks.shapes[6].points[1].y, -12, 1e-9) << "the floor above";
+  ASSERT_EQ(marks.shapes.size(), 12U) << "a ribbon, 6 risers and 5 treads";
+  std::set<long> heights;  // Of all edges, dm.
+  for (const Shape& shape : std::span(marks.shapes).subspan(1)) {
+    ASSERT_EQ(shape.points.size(), 4U);
+    EXPECT_TRUE(shape.filled);
+    for (const Point& point : shape.points) heights.insert(std::lround(-point.y));
+  }
+  EXPECT_EQ(heights, (std::set<long>{0, 2, 4, 6, 8, 10, 12})) << "from the floor below to the one above";
   EXPECT_EQ(texts(marks), (std::vector<std::string>{"7 stairs, 6 steps"}));
 }
 

@@ -228,6 +228,29 @@ TEST_F(FloorsTest, KeysAndFingersChooseAFloor) {
   EXPECT_THAT(sink.lines, IsEmpty());
 }
 
+TEST_F(FloorsTest, InThreeDimensionsAllFloorsAreShownUntilOneIsChosen) {
+  QTest::keyClick(window(), Qt::Key_V);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return solid().voxels().paintings() > 0; }));
+  settle_layout();
+  EXPECT_EQ(text("floorToggle"), "all floors");
+  EXPECT_LT(solid().slice().low, -100.0);
+  picture("solid_floors");
+  control.select("r4", false);
+  touch(middle("floorToggle"));
+  EXPECT_EQ(text("floorToggle"), "floor -1, auto");
+  EXPECT_NEAR(solid().slice().low, -4.3, 0.2);
+  EXPECT_NEAR(solid().slice().high, -1.8, 0.2);
+  picture("solid_floor");
+  touch(middle("floorUp"));
+  EXPECT_EQ(text("floorToggle"), "floor 0");
+  EXPECT_NEAR(solid().slice().low, -0.3, 0.2);
+  touch(middle("floorToggle"));
+  touch(middle("floorToggle"));
+  EXPECT_EQ(text("floorToggle"), "all floors");
+  EXPECT_LT(solid().slice().low, -100.0);
+  EXPECT_THAT(sink.lines, IsEmpty());
+}
+
 TEST_F(FloorsTest, AGoalIsOnTheFloorThatIsShown) {
   control.select("r4", false);
   drawn();

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "basestation/gui/scene/map_view_3d.hpp"
+#include "basestation/gui/scene/orbit_fit.hpp"
 #include "tests/gui/window_fixture.hpp"
 
 namespace adit::gui {
@@ -46,6 +47,23 @@ TEST_F(SolidWindow, VoxelsArePaintedWhereTheyProject) {
   this->picture("solid");
   Theme::instance().set_light(true);
   this->picture("solid_light");
+  window()->resize(1920, 1080);
+  QTest::qWait(200);
+  this->picture("solid_light_1080");
+  Theme::instance().set_light(false);
+  this->picture("solid_1080");
+}
+
+TEST_F(SolidWindow, TheKeyFollowsTheSelectedRobot) {
+  control.select("r1", false);
+  QTest::keyClick(window(), Qt::Key_F);
+  EXPECT_EQ(solid().followed(), "r1");
+  solid().zoomBy(4.0);
+  QTest::qWait(300);
+  this->picture("solid_follow");
+  EXPECT_EQ(solid().followed(), "r1") << "closer";
+  QTest::keyClick(window(), Qt::Key_F);
+  EXPECT_EQ(solid().followed(), "");
 }
 
 TEST_F(SolidWindow, TheFirstCutHidesTheCeilingAndTheKeysMoveIt) {
@@ -66,15 +84,15 @@ TEST_F(SolidWindow, TheFirstCutHidesTheCeilingAndTheKeysMoveIt) {
 TEST_F(SolidWindow, ATapSelectsARobotAndALongPressSendsItToThePlaceOnTheFloor) {
   touch(on_solid(2, 0, 0));
   ASSERT_THAT(control.selection(), ElementsAre("r1"));
-  const QPoint at = on_solid(12.0, 3.0, 0.0);
+  const QPoint at = on_solid(11.0, 5.0, 0.0);  // No wall hides it.
   finger_down(at);
   ASSERT_TRUE(QTest::qWaitFor([&] { return solid().aims(); }));
   finger_up(at);
   ASSERT_THAT(sink.lines, SizeIs(1));
   double x = 0, y = 0, z = 0;
   ASSERT_EQ(std::sscanf(sink.lines[0].c_str(), "goto r1 %lf %lf %lf", &x, &y, &z), 3) << sink.lines[0];
-  EXPECT_NEAR(x, 12.0, 0.4);
-  EXPECT_NEAR(y, 3.0, 0.4);
+  EXPECT_NEAR(x, 11.0, 0.4);
+  EXPECT_NEAR(y, 5.0, 0.4);
   EXPECT_NEAR(z, 0.0, 0.3);
 }
 
@@ -121,6 +139,92 @@ TEST_F(SolidWindow, OneFingerTurnsTheMapAndTwoMoveIt) {
   EXPECT_EQ(solid().camera().yaw, turned.yaw);
   EXPECT_NE(solid().camera().target, turned.target);
   EXPECT_TRUE(sink.lines.empty());
+}
+
+TEST_F(SolidWindow, TheMiddleButtonAndShiftMoveTheMapAndSendNothing) {
+  control.select("r1", false);
+  const QPoint at = solid().mapToScene({300, 200}).toPoint();
+  for (const auto& [button, key] :
+       {std::pair{Qt::MiddleButton, Qt::NoModifier}, {Qt::LeftButton, Qt::ShiftModifier}}) {
+    const OrbitCamera before = solid().camera();
+    QTest::mousePress(window(), button, key, at);
+    for (int i = 1; i <= 5; ++i) QTest::mouseMove(window(), at + QPoint(0, 15 * i));
+    QTest::mouseRelease(window(), button, key, at + QPoint(0, 75));
+    settle();
+    EXPECT_EQ(solid().camera().yaw, before.yaw);
+    EXPECT_EQ(solid().camera().pitch, before.pitch);
+    EXPECT_NE(solid().camera().target, before.target);
+  }
+  QTest::mouseClick(window(), Qt::MiddleButton, {}, at);
+  settle();
+  EXPECT_TRUE(sink.lines.empty());
+  EXPECT_THAT(control.selection(), ElementsAre("r1"));
+}
+
+TEST_F(SolidWindow, AllThatIsShownFillsTheViewAndStaysInIt) {
+  for (const QSize size : {QSize(1280, 720), QSize(1920, 1080)}) {
+    window()->resize(size);
+    QTest::qWait(100);
+    solid().fitAll();
+    settle();
+    const auto box = box_of(solid().camera(), solid().shown_corners());
+    ASSERT_TRUE(box);
+    EXPECT_GE(box->low.x, 0);
+    EXPECT_GE(box->low.y, 0);
+    EXPECT_LE(box->high.x, solid().width());
+    EXPECT_LE(box->high.y, solid().height());
+    EXPECT_GE(
+        std::max((box->high.x - box->low.x) / solid().width(), (box->high.y - box->low.y) / solid().height()),
+        0.8);
+  }
+  EXPECT_TRUE(solid().fitting());
+  station::TileMap more = corridors();
+  auto tile = std::make_shared<station::MapTile>(*more.tiles.at({0, 0}));
+  tile->x = 3;
+  more.tiles[{3, 0}] = tile;
+  control.show_map(std::make_shared<station::TileMap>(more));
+  settle();
+  const auto box = box_of(solid().camera(), solid().shown_corners());
+  ASSERT_TRUE(box);
+  EXPECT_LE(box->high.x, solid().width()) << "the map grew";
+  touch(on_solid(12, 4, 0));
+  const OrbitCamera before = solid().camera();
+  solid().zoomBy(2.0);
+  EXPECT_FALSE(solid().fitting());
+  EXPECT_NE(solid().camera(), before);
+}
+
+TEST_F(SolidWindow, AFollowedRobotStaysInTheMiddleUntilTheMapIsMoved) {
+  solid().toggleFollow();
+  EXPECT_EQ(control.outcome_kind(), "refused") << "none is selected";
+  control.select("r1", false);
+  solid().toggleFollow();
+  EXPECT_EQ(solid().followed(), "r1");
+  station::World world = ten_robots();
+  for (int i = 0; i < 3; ++i) {
+    world.robots[0].x += 2;
+    world.robots[0].z += 0.5F;
+    show(world);
+    settle();
+    const auto seen = solid().camera().project({world.robots[0].x, world.robots[0].y, world.robots[0].z});
+    ASSERT_TRUE(seen);
+    EXPECT_NEAR(seen->at.x, solid().width() / 2, 1.0);
+    EXPECT_NEAR(seen->at.y, solid().height() / 2, 1.0);
+  }
+  QTest::qWait(300);
+  const int paintings = solid().voxels().paintings();
+  show(world);
+  QTest::qWait(300);
+  EXPECT_EQ(solid().voxels().paintings(), paintings) << "it stands";
+  const QPoint at = solid().mapToScene({300, 200}).toPoint();
+  QTest::mousePress(window(), Qt::LeftButton, {}, at);
+  for (int i = 1; i <= 5; ++i) QTest::mouseMove(window(), at + QPoint(15 * i, 0));
+  QTest::mouseRelease(window(), Qt::LeftButton, {}, at + QPoint(75, 0));
+  EXPECT_EQ(solid().followed(), "r1") << "turned";
+  QTest::mousePress(window(), Qt::MiddleButton, {}, at);
+  QTest::mouseMove(window(), at + QPoint(40, 0));
+  QTest::mouseRelease(window(), Qt::MiddleButton, {}, at + QPoint(40, 0));
+  EXPECT_EQ(solid().followed(), "");
 }
 
 TEST_F(SolidWindow, GoesBackToTheViewFromAboveAndTakesAnEmptyMap) {

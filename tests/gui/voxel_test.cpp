@@ -41,14 +41,15 @@ OrbitCamera camera_at(const Point3& target) {
   return {.target = target, .yaw = 0.7, .pitch = 0.6, .distance = 10.0, .width = 320, .height = 240};
 }
 
-int covered(const VoxelPainter& painter) {
-  return static_cast<int>(std::count_if(painter.pixels().begin(), painter.pixels().end(),
-                                        [](std::uint32_t p) { return p != (0xFF000000U | kDark.ground); }));
+bool is_covered(const VoxelPainter& painter, const Point& at) {
+  return painter.covers(static_cast<int>(at.x), static_cast<int>(at.y));
 }
 
-bool is_covered(const VoxelPainter& painter, const Point& at) {
-  return painter.pixels()[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(painter.width()) +
-                          static_cast<std::size_t>(at.x)] != (0xFF000000U | kDark.ground);
+int covered(const VoxelPainter& painter) {
+  int count = 0;
+  for (int row = 0; row < painter.height(); ++row)
+    for (int column = 0; column < painter.width(); ++column) count += painter.covers(column, row);
+  return count;
 }
 
 TEST(OrbitCamera, APlaceGoesToTheScreenAndBack) {
@@ -83,25 +84,6 @@ TEST(OrbitCamera, UpIsUpAndTheMapFollowsTheFinger) {
   for (int i = 0; i < 1000; ++i) camera.orbit(17, 50);
   EXPECT_LE(camera.pitch, OrbitCamera::kMaxPitch);
   EXPECT_LE(std::abs(camera.yaw), std::numbers::pi);
-}
-
-TEST(OrbitCamera, FitsABoxIntoTheViewAndFillsIt) {
-  for (const auto& [width, height] : {std::pair{1000.0, 400.0}, {400.0, 1000.0}}) {
-    OrbitCamera camera{.width = width, .height = height};
-    const Point3 low{-7, -5, -0.2}, high{30, 9, 3};
-    camera.fit(low, high);
-    double widest = 0.0;
-    for (const double x : {low.x, high.x})
-      for (const double y : {low.y, high.y})
-        for (const double z : {low.z, high.z}) {
-          const auto seen = camera.project({x, y, z});
-          ASSERT_TRUE(seen);
-          widest =
-              std::max({widest, std::abs(seen->at.x / width - 0.5), std::abs(seen->at.y / height - 0.5)});
-        }
-    EXPECT_LE(widest, 0.5);
-    EXPECT_GE(widest, 0.44);
-  }
 }
 
 TEST(VoxelScene, EveryLevelIsOccupiedWhereAnyFinerVoxelIs) {
@@ -140,6 +122,45 @@ TEST(VoxelScene, ReadsOnlyTheTilesThatChanged) {
   EXPECT_EQ(scene.voxels(), 1U) << "another station's map";
   scene.show({});
   EXPECT_TRUE(scene.empty());
+}
+
+TEST(VoxelScene, SidesBetweenNeighboursAreNotSeenAtAnyLevel) {
+  std::set<std::array<int, 3>> voxels;
+  Random random(7);
+  for (int i = 0; i < 3000; ++i)
+    voxels.insert({static_cast<int>(random.uniform() * 40) + 10, static_cast<int>(random.uniform() * 40) + 10,
+                   static_cast<int>(random.uniform() * 12) - 6});
+  VoxelScene scene;
+  scene.show(map_of(voxels));
+  constexpr std::array<std::array<int, 3>, 6> kBeside{
+      {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+  for (int level = 0; level < VoxelScene::kLevels; ++level) {
+    std::set<std::array<int, 3>> coarse;
+    for (const auto& [x, y, z] : voxels) coarse.insert({x >> level, y >> level, z >> level});
+    for (const VoxelScene::Brick* brick : scene.bricks())
+      for (const VoxelScene::Voxel& voxel : brick->levels[static_cast<std::size_t>(level)]) {
+        const int x = static_cast<int>(std::lround(brick->x / kEdge)) / (1 << level) + voxel.x,
+                  y = static_cast<int>(std::lround(brick->y / kEdge)) / (1 << level) + voxel.y;
+        for (std::size_t side = 0; side < kBeside.size(); ++side)
+          EXPECT_EQ((voxel.sides >> side & 1) == 0,
+                    coarse.contains({x + kBeside[side][0], y + kBeside[side][1], voxel.z + kBeside[side][2]}))
+              << "level " << level << ", side " << side;
+      }
+  }
+}
+
+TEST(VoxelScene, TheCornersOfASliceReachAsFarAsItsVoxels) {
+  VoxelScene scene;
+  scene.show(map_of({{3, 40, 0}, {9, 45, 9}, {200, 0, 20}}));
+  Point3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+  for (const Point3& corner : scene.corners(-1.0, 1.0)) {
+    low = {std::min(low.x, corner.x), std::min(low.y, corner.y), std::min(low.z, corner.z)};
+    high = {std::max(high.x, corner.x), std::max(high.y, corner.y), std::max(high.z, corner.z)};
+  }
+  EXPECT_NEAR(low.x, 0.6, 1e-9);
+  EXPECT_NEAR(high.x, 2.0, 1e-9) << "the column farther east is above the slice";
+  EXPECT_NEAR(high.y, 9.2, 1e-9);
+  EXPECT_NEAR(high.z, 1.0, 1e-9);
 }
 
 TEST(VoxelPainter, AVoxelIsPaintedWhereItIsAndNowhereElse) {
@@ -214,6 +235,87 @@ TEST(VoxelPainter, FarVoxelsAreMergedAndCoverTheSamePixels) {
   painter.paint(scene, camera, {}, kDark, Detail3::moving);
   EXPECT_LT(painter.drawn(), drawn);
   EXPECT_NEAR(covered(painter), fine, 0.35 * fine);
+}
+
+TEST(VoxelPainter, SidesOfABlockDifferInBrightnessAndEachIsEven) {
+  std::set<std::array<int, 3>> voxels;
+  for (int x = 0; x < 20; ++x)
+    for (int y = 0; y < 20; ++y)
+      for (int z = 0; z < 20; ++z) voxels.insert({x, y, z});
+  VoxelScene scene;
+  scene.show(map_of(voxels));
+  for (const double distance : {8.0, 60.0}) {  // In sides of voxels, and in squares.
+    OrbitCamera camera{
+        .target = {2, 2, 2}, .yaw = 0.6, .pitch = 0.6, .distance = distance, .width = 640, .height = 480};
+    VoxelPainter painter;
+    painter.paint(scene, camera, {}, kDark, Detail3::fine);
+    const auto pixel = [&](const Point3& place) {
+      const auto seen = camera.project(place);
+      return painter
+          .pixels()[static_cast<std::size_t>(seen->at.y) * 640 + static_cast<std::size_t>(seen->at.x)];
+    };
+    const auto brightness = [](std::uint32_t p) { return (p >> 16 & 0xFF) + (p >> 8 & 0xFF) + (p & 0xFF); };
+    const std::uint32_t top = pixel({2, 2, 4});
+    if (distance < 10) {
+      const std::uint32_t west = pixel({0, 2, 3.9}), south = pixel({2, 0, 3.9});
+      EXPECT_GT(brightness(top), brightness(west) * 1.2);
+      EXPECT_GT(brightness(west), brightness(south) * 1.2);
+    }
+    for (const double x : {1.2, 1.7, 2.3, 2.9})
+      EXPECT_EQ(pixel({x, 2.5, 4}), top) << "no pattern on a plane, " << distance;
+    const auto place = painter.pick(camera.project({2, 2, 4})->at.x, camera.project({2, 2, 4})->at.y);
+    ASSERT_TRUE(place);
+    EXPECT_NEAR(place->z, 4.0, 0.05);
+  }
+}
+
+TEST(VoxelPainter, TheGridShowsWhereNoVoxelIs) {
+  VoxelScene scene;
+  scene.show(map_of({{0, 0, 0}, {100, 100, 0}}));
+  OrbitCamera camera = camera_at({10, 10, 0});
+  camera.distance = 40;
+  VoxelPainter painter;
+  painter.paint(scene, camera, {}, kDark, Detail3::fine);
+  ASSERT_EQ(grid_step(camera), 20.0);
+  const auto seen = camera.project({10, 0, 0});  // In the middle of a side.
+  const auto column = static_cast<std::size_t>(seen->at.x), row = static_cast<std::size_t>(seen->at.y);
+  int lines = 0;
+  for (std::size_t i = row - 2; i <= row + 2; ++i)
+    lines += painter.pixels()[i * 320 + column] != (0xFF000000U | kDark.ground);
+  EXPECT_GE(lines, 1);
+  EXPECT_LE(lines, 3);
+  EXPECT_FALSE(painter.pick(seen->at.x, seen->at.y)) << "it is no place of the map";
+}
+
+TEST(HeightColours, FollowTheSliceAndIgnoreSingleVoxels) {
+  std::set<std::array<int, 3>> voxels{{5, 5, -200}, {6, 6, 300}};
+  for (int x = 0; x < 40; ++x)
+    for (int y = 0; y < 40; ++y) voxels.insert({x, y, 0}), voxels.insert({x, 0, y / 3});
+  VoxelScene scene;
+  scene.show(map_of(voxels));
+  const HeightColours all(scene, {});
+  EXPECT_NEAR(all.low(), 0.0, 1e-9);
+  EXPECT_NEAR(all.high(), 2.8, 1e-9);
+  EXPECT_NEAR(HeightColours(scene, {-1e9, 1.0}).high(), 1.0, 1e-9);
+  EXPECT_NE(all.at(0.0), all.at(1.5));
+  EXPECT_EQ(all.at(-40.0), all.at(0.0));
+  const auto ticks = all.ticks(6);
+  EXPECT_THAT(ticks, testing::SizeIs(testing::AllOf(testing::Ge(3U), testing::Le(7U))));
+  EXPECT_GE(ticks.front(), all.low() - 1e-9);
+  EXPECT_LE(ticks.back(), all.high() + 1e-9);
+}
+
+TEST(HeightColours, AreTurbo) {
+  // The table that its author published, which the polynomial approximates.
+  const auto near = [](Rgb a, Rgb b) {
+    for (const int shift : {0, 8, 16})
+      if (std::abs(static_cast<int>(a >> shift & 0xFF) - static_cast<int>(b >> shift & 0xFF)) > 12)
+        return false;
+    return true;
+  };
+  EXPECT_PRED2(near, turbo(0.0), 0x30123B);
+  EXPECT_PRED2(near, turbo(0.5), 0xA4FC3C);
+  EXPECT_PRED2(near, turbo(1.0), 0x7A0403);
 }
 
 TEST(VoxelPainter, OddCamerasAndMapsPaintSomethingOrNothing) {

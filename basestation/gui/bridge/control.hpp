@@ -196,6 +196,7 @@ class Control : public QObject {
   void orders_dropped();  ///< A finger that is down on the map sends nothing any more.
   void solid_changed();
   void cut_moved(int steps);  ///< The height above which the map is not shown.
+  void follow_toggled();      ///< The map in 3D keeps the selected robot in its middle, or no longer.
   void aiming_changed();
   void reasons_open_changed();
 

@@ -302,6 +302,7 @@ std::span<const Control::KeyRow> Control::keys() {
       KeyRow{Qt::Key_K, Qt::ControlModifier, false, [](Control& c) { c.command_line_.set_open(true); }},
       KeyRow{Qt::Key_Colon, 0, false, [](Control& c) { c.command_line_.set_open(true); }},
       KeyRow{Qt::Key_V, 0, false, [](Control& c) { c.set_solid(!c.solid_); }},
+      KeyRow{Qt::Key_F, 0, false, [](Control& c) { emit c.follow_toggled(); }},
       KeyRow{Qt::Key_PageUp, 0, false, [](Control& c) { emit c.cut_moved(1); }},
       KeyRow{Qt::Key_PageDown, 0, false, [](Control& c) { emit c.cut_moved(-1); }},
       KeyRow{Qt::Key_I, 0, false, [](Control& c) { c.details_.set_open(!c.details_.is_open()); }},

@@ -35,6 +35,7 @@ Rectangle {
     Connections {
         target: pane.control
         function onCut_moved(steps) { pane.control.solid ? solid.moveCut(steps) : map.moveFloor(steps) }
+        function onFollow_toggled() { if (pane.control.solid) solid.toggleFollow() }
     }
     PlainLabel {
         visible: pane.control.solid ? solid.empty : map.empty
@@ -86,7 +87,7 @@ Rectangle {
         Wide {
             objectName: "fitAll"
             anchors.right: parent.right
-            text: map.fitting && !pane.control.solid ? "● fit all" : "fit all"
+            text: (pane.control.solid ? solid.fitting : map.fitting) ? "● fit all" : "fit all"
             onFired: pane.control.solid ? solid.fitAll() : map.fitAll()
         }
         Wide {
@@ -103,19 +104,27 @@ Rectangle {
             text: solid.cutting ? "≤ " + solid.cut.toFixed(1) + " m" : "all heights"
             onFired: solid.toggleCut()
         }
+        Wide {
+            objectName: "followToggle"
+            anchors.right: parent.right
+            visible: pane.control.solid
+            active: solid.followed !== ""
+            text: "follow  f"
+            onFired: solid.toggleFollow()
+        }
         Row {
-            visible: !pane.control.solid && map.floor !== ""
+            visible: (pane.control.solid ? solid.floor : map.floor) !== ""
             anchors.right: parent.right
             spacing: 1 * Theme.mm
-            Square { objectName: "floorDown"; text: "↓"; spoken: "lower floor"; onFired: map.moveFloor(-1) }
-            Square { objectName: "floorUp"; text: "↑"; spoken: "higher floor"; onFired: map.moveFloor(1) }
+            Square { objectName: "floorDown"; text: "↓"; spoken: "lower floor"; onFired: pane.control.solid ? solid.moveFloor(-1) : map.moveFloor(-1) }
+            Square { objectName: "floorUp"; text: "↑"; spoken: "higher floor"; onFired: pane.control.solid ? solid.moveFloor(1) : map.moveFloor(1) }
             HoldButton {
                 objectName: "floorToggle"
                 width: 30 * Theme.mm
                 height: 10 * Theme.mm
-                active: map.floorAutomatic
-                text: map.floor
-                onFired: map.toggleFloor()
+                active: pane.control.solid ? solid.floorAutomatic : map.floorAutomatic
+                text: pane.control.solid ? solid.floor : map.floor
+                onFired: pane.control.solid ? solid.toggleFloor() : map.toggleFloor()
             }
         }
         Row {

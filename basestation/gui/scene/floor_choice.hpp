@@ -14,6 +14,8 @@ class FloorChoice {
  public:
   enum class Kind : std::uint8_t { automatic, chosen, all };
 
+  explicit FloorChoice(Kind kind = Kind::automatic) : kind_(kind) {}
+
   /// Takes the floors and what is selected; without floors everything is shown.
   void update(const Floors& floors, const station::World& world, const std::vector<std::string>& selection);
   /// From automatic to all floors, and from anything else to automatic.
@@ -30,7 +32,7 @@ class FloorChoice {
   const std::string& label() const { return label_; }
 
  private:
-  Kind kind_{Kind::automatic};
+  Kind kind_;
   std::optional<double> height_{};  ///< Of the floor that is shown: its index changes when others are found.
   std::optional<std::size_t> shown_{};
   std::string label_{};

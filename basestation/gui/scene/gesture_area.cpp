@@ -17,7 +17,7 @@ double length(const QPointF& v) { return std::hypot(v.x(), v.y()); }
 }  // namespace
 
 GestureArea::GestureArea(QQuickItem* parent) : QQuickItem(parent) {
-  setAcceptedMouseButtons(Qt::LeftButton | Qt::RightButton);
+  setAcceptedMouseButtons(Qt::LeftButton | Qt::RightButton | Qt::MiddleButton);
   setAcceptTouchEvents(true);
 }
 
@@ -89,6 +89,12 @@ void GestureArea::mousePressEvent(QMouseEvent* event) {
   event->accept();
   if (state_ != State::idle) return cancel();  // A second button takes back.
   const bool right = event->button() == Qt::RightButton;
+  if (event->button() == Qt::MiddleButton) {  // It moves the map and means no place.
+    sliding_ = true;
+    state_ = State::panning;
+    last_ = event->position();
+    return;
+  }
   sliding_ = right || event->modifiers().testFlag(Qt::ShiftModifier);
   press(event->position(), right);
 }

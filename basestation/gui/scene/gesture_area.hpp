@@ -53,7 +53,7 @@ class GestureArea : public QQuickItem {
   double held_share() const { return std::min(1.0, static_cast<double>(pressed_for()) / kHold); }
   const QPointF& pressed_at() const { return start_; }
   bool pinching() const { return state_ == State::pinching; }
-  /// The mouse drags with its right button, or with the shift key.
+  /// The mouse drags with its middle or right button, or with the shift key.
   bool sliding() const { return sliding_; }
   bool busy() const { return state_ != State::idle; }  ///< A finger or a button is down.
 

@@ -5,7 +5,9 @@
 #include <QTimerEvent>
 #include <algorithm>
 
+#include "basestation/gui/scene/height_legend.hpp"
 #include "basestation/gui/scene/layer_marks.hpp"
+#include "basestation/gui/scene/orbit_fit.hpp"
 #include "basestation/gui/scene/orbit_marks.hpp"
 #include "basestation/gui/scene/theme.hpp"
 
@@ -34,6 +36,8 @@ void VoxelItem::paint(QPainter* painter) {
   const QImage image(reinterpret_cast<const uchar*>(painter_.pixels().data()), painter_.width(),
                      painter_.height(), painter_.width() * 4, QImage::Format_RGB32);
   painter->drawImage(QPointF(0, 0), image);
+  const double mm = Theme::instance().mm();
+  if (!scene_.empty()) draw_height_legend(*painter, painter_.colours(), {2.0 * mm, 2.0 * mm}, mm);
 }
 
 MapView3D::MapView3D(QQuickItem* parent)
@@ -47,7 +51,9 @@ void MapView3D::set_control(Control* control) {
     control_->disconnect(this), control_->mark()->disconnect(this), control_->tabs()->disconnect(this);
   control_ = control;
   if (control_) {
-    connect(control_, &Control::shown, this, &MapView3D::refresh);
+    connect(control_, &Control::shown, this, [this] {
+      if (isVisible() && !move_with_robot()) refresh();
+    });
     connect(control_->mark(), &MarkTool::changed, this, &MapView3D::refresh);
     connect(control_->tabs(), &TabState::findings_changed, this, &MapView3D::refresh);
     connect(control_, &Control::orders_dropped, this, [this] { drop_press(); });
@@ -67,11 +73,14 @@ void MapView3D::itemChange(ItemChange change, const ItemChangeData& data) {
 
 void MapView3D::show_map() {
   voxels_->scene().show(*control_->map());
-  if (!fitted_ && !empty() && width() > 10) {
-    fitAll();
+  floors_.show(*control_->map());
+  if (!begun_ && !empty() && width() > 10) {
+    begun_ = true;
     slice_.high = cut_above_robots();
+    fit(true);
     emit cut_changed();
   }
+  if (fitting_ && !busy() && !aiming()) fit(false);
   look(Detail3::fine);
   emit content_changed();
 }
@@ -89,6 +98,7 @@ void MapView3D::geometryChange(const QRectF& now, const QRectF& before) {
   marks_->setSize(now.size());
   camera_.width = now.width();
   camera_.height = now.height();
+  if (fitting_ && begun_ && !busy() && !aiming()) fit(true);
   if (isVisible() && control_) show_map();
 }
 
@@ -96,6 +106,7 @@ double MapView3D::slop() const { return kSlopMm * Theme::instance().mm(); }
 
 void MapView3D::refresh() {
   if (!control_ || !isVisible()) return;
+  if (!busy() && !aiming()) show_floor();
   const auto project = [this](const Point3& place) -> std::optional<Point> {
     const auto seen = camera_.project(place);
     return seen ? std::optional(seen->at) : std::nullopt;
@@ -119,7 +130,7 @@ void MapView3D::refresh() {
       add_flag(marks, *at, Theme::instance().mm());
   if (aims() && needs_hold())
     add_ring(marks, {pressed_at().x(), pressed_at().y()}, held_share(), Theme::instance().mm());
-  marks_->show(std::move(marks), {.scale = 0.0});
+  marks_->show(std::move(marks), {.scale = camera_.focal() / camera_.distance}, true);
 }
 
 void MapView3D::look(Detail3 detail) {
@@ -134,11 +145,102 @@ void MapView3D::timerEvent(QTimerEvent* event) {
   look(Detail3::fine);
 }
 
+void MapView3D::set_fitting(bool fitting) {
+  if (fitting == fitting_) return;
+  fitting_ = fitting;
+  emit fitting_changed();
+}
+
+std::vector<Point3> MapView3D::shown_corners() const {
+  std::vector<Point3> corners = voxels_->scene().corners(slice_.low, slice_.high);
+  const auto add = [&](double x, double y, double z) {
+    if (drawable(x, y) && std::abs(z) < 1e5) corners.push_back({x, y, z});
+  };
+  for (const station::Robot& robot : control_->world().robots)
+    if (robot.located) add(robot.x, robot.y, robot.z);
+  for (const station::StationSummary& station : control_->world().stations)
+    if (station.place) add((*station.place)[0], (*station.place)[1], (*station.place)[2]);
+  return corners;
+}
+
+void MapView3D::fit(bool at_once) {
+  if (!control_ || empty() || width() < 10) return;
+  const std::vector<Point3> corners = shown_corners();
+  if (!at_once)
+    if (const auto box = box_of(camera_, corners);
+        box && box->low.x >= 0 && box->low.y >= 0 && box->high.x <= width() && box->high.y <= height())
+      return;
+  const double mm = Theme::instance().mm();
+  // The legend, the buttons, and names below robots.
+  camera_ = fitted(camera_, corners, {22.0 * mm, 3.0 * mm, 27.0 * mm, 5.0 * mm + covered_});
+}
+
 void MapView3D::fitAll() {
   if (empty()) return;
-  fitted_ = true;
-  camera_.fit(voxels_->scene().low(), voxels_->scene().high());
+  follow({});
+  set_fitting(true);
+  fit(true);
   look(Detail3::fine);
+}
+
+void MapView3D::follow(const QString& robot) {
+  if (robot == followed_) return;
+  followed_ = robot;
+  emit followed_changed();
+}
+
+void MapView3D::toggleFollow() {
+  if (!control_) return;
+  if (!followed_.isEmpty()) return follow({});
+  if (control_->selection().empty()) return control_->say("Follow: select a robot", "refused");
+  set_fitting(false);
+  follow(QString::fromStdString(control_->selection().front()));
+  if (!move_with_robot()) refresh();
+}
+
+bool MapView3D::move_with_robot() {
+  constexpr double kMoved = 0.5;  // Pixels that can be seen.
+  if (followed_.isEmpty() || busy() || aiming()) return false;
+  const station::Robot* robot = control_->world().robot(followed_.toStdString());
+  if (!robot) return follow({}), false;
+  if (!robot->located || !drawable(robot->x, robot->y) || !(std::abs(robot->z) < 1e5F)) return false;
+  OrbitCamera next = camera_;
+  next.target = {robot->x, robot->y, robot->z};
+  next.pan(0, -covered_ / 2);
+  const Point3 by = next.target - camera_.target;
+  if (std::hypot(by.x, by.y, by.z) * camera_.focal() / camera_.distance < kMoved) return false;
+  camera_ = next;
+  look(Detail3::moving);
+  return true;
+}
+
+void MapView3D::show_floor() {
+  (void)floors_.show(control_->world(), control_->trails());
+  choice_.update(floors_, control_->world(), control_->selection());
+  const auto shown = choice_.shown();
+  const std::optional<Floor> floor = shown ? std::optional(floors_.floors()[*shown]) : std::nullopt;
+  if (floor != floor_) {
+    const bool was_shown = floor_.has_value();
+    floor_ = floor;
+    if (floor_)
+      slice_ = slice_of(*floor_);
+    else if (was_shown)
+      slice_ = {.high = cut_above_robots()};
+    if (fitting_) fit(true);
+    voxels_->look(camera_, slice_, Detail3::fine);
+    emit cut_changed();
+  }
+  if (std::exchange(floor_said_, this->floor()) != floor_said_) emit floor_changed();
+}
+
+void MapView3D::moveFloor(int steps) {
+  choice_.move(steps, floors_);
+  refresh();
+}
+
+void MapView3D::toggleFloor() {
+  choice_.toggle();
+  refresh();
 }
 
 void MapView3D::look_at(double x, double y, double height) {
@@ -149,6 +251,8 @@ void MapView3D::look_at(double x, double y, double height) {
     for (const std::string& name : control_->selection())
       if (const station::Robot* robot = control_->world().robot(name); robot && std::abs(robot->z) < 1e5F)
         z = robot->z;
+  set_fitting(false);
+  follow({});
   camera_.target = {x, y, z};
   camera_.distance = std::min(camera_.distance, kNearEnough);
   camera_.pan(0, -covered_ / 2);
@@ -210,14 +314,18 @@ void MapView3D::send_aim(const QPointF& at, bool held) {
 }
 
 void MapView3D::pan(const QPointF& by) {
-  if (pinching() || sliding())
+  set_fitting(false);
+  if (pinching() || sliding()) {
+    follow({});
     camera_.pan(by.x(), by.y());
-  else
+  } else {
     camera_.orbit(by.x(), by.y());
+  }
   look(Detail3::moving);
 }
 
 void MapView3D::zoom(double factor, const QPointF&) {
+  set_fitting(false);
   camera_.zoom(factor);
   look(Detail3::moving);
 }

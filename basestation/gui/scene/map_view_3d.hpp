@@ -5,6 +5,7 @@
 #include <QImage>
 
 #include "basestation/gui/bridge/control.hpp"
+#include "basestation/gui/scene/floor_choice.hpp"
 #include "basestation/gui/scene/gesture_area.hpp"
 #include "basestation/gui/scene/mark_painter.hpp"
 #include "basestation/gui/scene/orbit_camera.hpp"
@@ -35,9 +36,9 @@ class VoxelItem : public QQuickPaintedItem {
   int paintings_{0};
 };
 
-/// The map from the side with all marks. One finger or the mouse turns it, two fingers or
-/// the right button move it; a tap selects a robot,
-/// and a long press sends the selected ones to the place under the finger.
+/// The map from the side with all marks. One finger or the mouse turns it, two fingers, the middle or the
+/// right button move it; a tap selects a robot, and a long press sends the selected ones to the place under
+/// the finger.
 class MapView3D : public adit::gui::GestureArea {
   Q_OBJECT
   QML_ELEMENT
@@ -48,6 +49,13 @@ class MapView3D : public adit::gui::GestureArea {
   /// Height above which nothing is shown, m.
   Q_PROPERTY(double cut READ cut NOTIFY cut_changed)
   Q_PROPERTY(bool cutting READ cutting NOTIFY cut_changed)
+  /// Whether all that is shown stays in view; ends when the operator moves it.
+  Q_PROPERTY(bool fitting READ fitting NOTIFY fitting_changed)
+  /// The robot that stays in the middle; empty: none.
+  Q_PROPERTY(QString followed READ followed NOTIFY followed_changed)
+  /// The floor that alone is shown, in words; empty: there are not two.
+  Q_PROPERTY(QString floor READ floor NOTIFY floor_changed)
+  Q_PROPERTY(bool floorAutomatic READ floor_automatic NOTIFY floor_changed)
 
  public:
   static constexpr double kCutStep = 0.5;  ///< m
@@ -61,6 +69,13 @@ class MapView3D : public adit::gui::GestureArea {
   bool empty() const { return voxels_->scene().empty(); }
   double cut() const { return slice_.high; }
   bool cutting() const { return slice_.high < 1e8; }
+  const Slice& slice() const { return slice_; }
+  bool fitting() const { return fitting_; }
+  const QString& followed() const { return followed_; }
+  QString floor() const { return QString::fromStdString(choice_.label()); }
+  bool floor_automatic() const { return choice_.kind() == FloorChoice::Kind::automatic; }
+  /// Corners of what is shown, map frame, m.
+  std::vector<Point3> shown_corners() const;
   const OrbitCamera& camera() const { return camera_; }
   const MarkList& marks() const { return marks_->marks(); }
   const VoxelItem& voxels() const { return *voxels_; }
@@ -71,12 +86,21 @@ class MapView3D : public adit::gui::GestureArea {
   Q_INVOKABLE void moveCut(int steps);
   /// Shows all heights, or cuts above the robots again.
   Q_INVOKABLE void toggleCut();
+  /// Keeps the selected robot in the middle, or no longer.
+  Q_INVOKABLE void toggleFollow();
+  /// Shows the floor so many above alone.
+  Q_INVOKABLE void moveFloor(int steps);
+  /// Shows the floor of the selected robot alone, or all of them.
+  Q_INVOKABLE void toggleFloor();
 
  signals:
   void control_changed();
   void content_changed();
   void cut_changed();
   void covered_changed();
+  void fitting_changed();
+  void followed_changed();
+  void floor_changed();
 
  protected:
   void geometryChange(const QRectF& now, const QRectF& before) override;
@@ -101,13 +125,24 @@ class MapView3D : public adit::gui::GestureArea {
   void show_map();
   std::optional<Point3> place_at(const QPointF& at) const;
   double cut_above_robots() const;
+  void fit(bool at_once);
+  void set_fitting(bool fitting);
+  void follow(const QString& robot);
+  bool move_with_robot();  ///< False: the view stays.
+  void show_floor();
 
   Control* control_{};
   VoxelItem* voxels_{};
   MarkPainter* marks_{};
   OrbitCamera camera_{};
   Slice slice_{};
-  bool fitted_{false};
+  bool begun_{false};  ///< The first map was shown.
+  bool fitting_{true};
+  QString followed_{};
+  Floors floors_{};
+  FloorChoice choice_{FloorChoice::Kind::all};
+  QString floor_said_{};
+  std::optional<Floor> floor_{};  ///< As the slice shows it.
   double covered_{0.0};
   std::vector<Point3> ghosts_{};
   QBasicTimer settled_{};  ///< Runs while the camera moves.

@@ -22,6 +22,7 @@ struct Shape {
   Token fill{Token::text};
   double opacity{1.0};       ///< Of the line and of the area, [0, 1].
   double fill_opacity{1.0};  ///< Of the area, beside `opacity`.
+  double shade{1.0};         ///< Brightness of the area, [0, 1].
   bool operator==(const Shape&) const = default;
 };
 

@@ -14,9 +14,10 @@ MarkPainter::MarkPainter(QQuickItem* parent) : QQuickPaintedItem(parent) {
   connect(&Theme::instance(), &Theme::changed, this, [this] { update(); });
 }
 
-void MarkPainter::show(MarkList marks, const Camera& camera) {
-  if (marks == marks_ && camera == camera_) return;
+void MarkPainter::show(MarkList marks, const Camera& camera, bool on_colours) {
+  if (marks == marks_ && camera == camera_ && on_colours == on_colours_) return;
   marks_ = std::move(marks);
+  on_colours_ = on_colours;
   camera_ = camera;
   update();
 }
@@ -37,14 +38,14 @@ void MarkPainter::draw_shape(QPainter& painter, const Shape& shape) const {
   };
   const auto draw = [&] { shape.closed ? painter.drawPolygon(points) : painter.drawPolyline(points); };
   const bool coloured = shape.line != Token::text && shape.line != Token::dim;
-  if (theme.light() && coloured && shape.width > 0.0) {
-    painter.setPen(pen_of(theme.ink(), shape.width + 2.0));
+  if (((theme.light() && coloured) || (on_colours_ && !outlined)) && shape.width > 0.0) {
+    painter.setPen(pen_of(coloured ? theme.ink() : theme.ground(), shape.width + 2.0));
     painter.setBrush(Qt::NoBrush);
     draw();
   }
   const QPen pen = pen_of(outlined ? theme.ink() : theme.of(shape.line), std::max(shape.width, 0.1));
   painter.setPen(shape.width > 0.0 ? pen : QPen(Qt::NoPen));
-  QColor fill = theme.of(shape.fill);
+  QColor fill = QColor::fromRgb(mixed(kInk, colour(shape.fill, theme.palette()), shape.shade));
   fill.setAlphaF(static_cast<float>(shape.fill_opacity));
   painter.setBrush(shape.filled ? QBrush(fill) : QBrush(Qt::NoBrush));
   draw();
@@ -71,7 +72,6 @@ void MarkPainter::draw_label(QPainter& painter, const MapLabel& label) const {
 }
 
 void MarkPainter::draw_bar(QPainter& painter) const {
-  if (!(camera_.scale > 0.0)) return;  // A view from the side has no scale.
   const Theme& theme = Theme::instance();
   const double length = bar_length(camera_.scale, 180.0), pixels = length * camera_.scale;
   const double right = width() - 14, y = height() - 14;
@@ -82,8 +82,8 @@ void MarkPainter::draw_bar(QPainter& painter) const {
   painter.setPen(QPen(theme.text(), 2.0));
   painter.drawLine(QPointF(right - pixels, y), QPointF(right, y));
   for (const double x : {right - pixels, right}) painter.drawLine(QPointF(x, y - 5), QPointF(x, y + 5));
-  draw_label(painter,
-             {.at = {right - pixels / 2, y - 13}, .text = QString::number(length).toStdString() + " m"});
+  const QString text = QString::number(length) + (on_colours_ ? " m, as the grid" : " m");
+  draw_label(painter, {.at = {right - pixels / 2, y - 13}, .text = text.toStdString()});
 }
 
 void MarkPainter::paint(QPainter* painter) {

@@ -12,8 +12,9 @@ class MarkPainter : public QQuickPaintedItem {
 
  public:
   explicit MarkPainter(QQuickItem* parent = nullptr);
-  /// `camera`: for the scale bar; with a scale of 0 there is none.
-  void show(MarkList marks, const Camera& camera);
+  /// `camera`: for the scale bar. `on_colours`: the map below has colours, from which outlines set lines off,
+  /// and a grid of squares as wide as the bar.
+  void show(MarkList marks, const Camera& camera, bool on_colours = false);
   const MarkList& marks() const { return marks_; }
   void paint(QPainter* painter) override;
 
@@ -24,6 +25,7 @@ class MarkPainter : public QQuickPaintedItem {
 
   MarkList marks_{};
   Camera camera_{};
+  bool on_colours_{false};
 };
 
 }  // namespace adit::gui

@@ -35,8 +35,8 @@ struct OrbitCamera {
   static constexpr double kHalfView = 25.0 * std::numbers::pi / 180.0;  ///< Half of the vertical view, rad.
 
   Point3 target{};  ///< In the middle of the view.
-  double yaw{std::numbers::pi /
-             2};               ///< Direction in which the camera looks, from x, rad: north, as from above.
+  /// Direction in which the camera looks, from x, rad: nearly north, so that walls along x and y both show.
+  double yaw{std::numbers::pi / 2 + 0.22};
   double pitch{0.9};           ///< How far down it looks, rad.
   double distance{20.0};       ///< From the target, m.
   double width{1}, height{1};  ///< Size of the view, pixels.
@@ -80,23 +80,6 @@ struct OrbitCamera {
     target.y += -right * c + ahead * s;
   }
   void zoom(double factor) { distance = std::clamp(distance / factor, kMinDistance, kMaxDistance); }
-  /// Shows a box of the map frame, m, with all of its corners in view.
-  void fit(const Point3& low, const Point3& high) {
-    constexpr double kFilled = 0.94;  // Share of the view.
-    target = 0.5 * (low + high);
-    const auto [right, down, ahead] = axes();
-    const double tan_y = kFilled * std::tan(kHalfView), tan_x = tan_y * width / std::max(height, 1.0);
-    double needed = 2.0;
-    for (const double x : {low.x, high.x})
-      for (const double y : {low.y, high.y})
-        for (const double z : {low.z, high.z}) {
-          const Point3 corner = Point3{x, y, z} - target;
-          const double across = std::max(std::abs(dot(corner, right)) / std::max(tan_x, 1e-3),
-                                         std::abs(dot(corner, down)) / tan_y);
-          needed = std::max(needed, across - dot(corner, ahead));
-        }
-    distance = std::clamp(needed, kMinDistance, kMaxDistance);
-  }
 };
 
 }  // namespace adit::gui

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "basestation/gui/scene/orbit_body.hpp"
 #include "basestation/gui/scene/state.hpp"
 #include "basestation/model/numbering.hpp"
 #include "basestation/model/route.hpp"
@@ -15,7 +16,7 @@ namespace {
 using contract::GoalState;
 using station::Robot;
 
-constexpr double kMinPixels = 14.0;  // Of a robot.
+constexpr double kMinPixels = 26.0;  // Of a robot, so that its kind and its heading can be seen.
 
 class OrbitDrawer {
  public:
@@ -38,6 +39,7 @@ class OrbitDrawer {
         mark.line = Token::goal;
         out_.shapes.push_back(std::move(mark));
       }
+    add_axes(out_, scene_.camera, {13.0 * scene_.mm, scene_.camera.height - 13.0 * scene_.mm}, scene_.mm);
     return std::move(out_);
   }
 
@@ -137,12 +139,7 @@ class OrbitDrawer {
     const double opacity = old ? 0.55 : 1.0;
     const double extent = extent_of(robot), scale = scene_.camera.focal() / seen->depth;
     const double grow = std::max(1.0, kMinPixels / (extent * scale));
-    double length = robot.size.length, width = robot.size.width;
-    if (!(length > 0.05 && length < 50.0 && width > 0.05 && width < 50.0)) length = width = extent;
-    const double yaw = std::isfinite(robot.yaw) ? robot.yaw : 0.0;
-    const double c = grow * std::cos(yaw), s = grow * std::sin(yaw);
-    const auto place = [&](double x, double y) { return centre + Point3{c * x - s * y, s * x + c * y, 0}; };
-    const double l = length / 2, w = width / 2, ring = grow * (std::hypot(l, w) + 0.1);
+    const double ring = grow * (extent * 0.65 + 0.1);
     const bool selected =
         std::find(scene_.selection.begin(), scene_.selection.end(), robot.name) != scene_.selection.end();
     const auto around = [&](double radius, int corners) {
@@ -153,16 +150,22 @@ class OrbitDrawer {
     };
     if (selected) add(around(ring * 1.3, 40), {.closed = true, .line = Token::text, .width = 3.0});
     if (robot.stopped) add(around(ring * 1.4, 4), {.closed = true, .line = Token::bad, .width = 3.5});
-    const Shape body{.closed = true,
-                     .line = Token::text,
-                     .width = 1.5,
-                     .dashed = old,
-                     .filled = true,
-                     .fill = owner_of(robot),
-                     .opacity = opacity};
-    add({place(l, w), place(-l, w), place(-l, -w), place(l, -w)}, body);
-    add({place(l + 0.4 * length, 0), place(l, 0.7 * w), place(l, -0.7 * w)}, body);
-    out_.labels.push_back({.at = seen->at, .text = number, .on_fill = true, .opacity = opacity});
+    add_body(out_, scene_.camera, robot, centre,
+             {.fill = owner_of(robot), .dashed = old, .opacity = opacity, .grow = grow});
+    const auto above = scene_.camera.project(centre + Point3{0, 0, grow * tallness_of(robot)});
+    const Point top = above ? above->at : seen->at;
+    // Its number on a pin, as on its card.
+    const Point badge{top.x, top.y - 4.5 * scene_.mm};
+    out_.shapes.push_back(
+        {.points = {top, badge}, .line = owner_of(robot), .width = 2.0, .opacity = opacity});
+    out_.shapes.push_back({.points = circle(badge, 2.3 * scene_.mm, 20),
+                           .closed = true,
+                           .line = Token::text,
+                           .width = 1.0,
+                           .filled = true,
+                           .fill = owner_of(robot),
+                           .opacity = opacity});
+    out_.labels.push_back({.at = badge, .text = number, .on_fill = true, .opacity = opacity});
     std::string label = robot.name;
     if (owner_of(robot) == Token::other) label += ", " + robot.holder;
     if (robot.lost) label += " lost " + station::fixed(robot.age + scene_.silent, 0) + " s";

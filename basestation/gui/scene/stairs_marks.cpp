@@ -36,7 +36,7 @@ class StairsDrawer {
                            .opacity = opacity_,
                            .fill_opacity = confirmed ? 0.5 : 0.15});
     if (scene_.from_side)
-      draw_treads();
+      draw_steps();
     else if (std::hypot(corners[3].x - corners[0].x, corners[3].y - corners[0].y) >= kMinChevron)
       draw_chevrons();
     const auto highest = std::ranges::min_element(corners, {}, &Point::y);
@@ -92,9 +92,42 @@ class StairsDrawer {
     }
   }
 
-  void draw_treads() {
-    for (int i = 0; i < stairs_.steps; ++i)
-      line(seen({{i * stairs_.run, -half()}, {i * stairs_.run, half()}}, stairs_.rise / 2), 1.5);
+  /// A side of a step, from one line across it to another: m ahead of the foot, and the height, m.
+  std::vector<Point> side(double from, double low, double to, double high) const {
+    const double from_line = low - from * stairs_.rise / stairs_.run - stairs_.foot.z(),
+                 to_line = high - to * stairs_.rise / stairs_.run - stairs_.foot.z();
+    std::vector<Point> out = seen({{from, -half()}, {from, half()}}, from_line);
+    const std::vector<Point> end = seen({{to, half()}, {to, -half()}}, to_line);
+    if (out.empty() || end.empty()) return {};
+    out.insert(out.end(), end.begin(), end.end());
+    return out;
+  }
+
+  /// Treads and risers as areas, those that are farther away first.
+  void draw_steps() {
+    const double run = stairs_.run, rise = stairs_.rise;
+    const auto face = [&](std::vector<Point> points, double shade) {
+      if (points.empty()) return;
+      out_.shapes.push_back({.points = std::move(points),
+                             .closed = true,
+                             .width = 1.0,
+                             .filled = true,
+                             .fill = item_.verdict == station::Verdict::confirmed ? Token::ok : Token::none,
+                             .opacity = opacity_,
+                             .shade = shade});
+    };
+    const std::vector<Point> first = side(0.0, 0.0, 0.0, 1.0);
+    if (first.empty()) return;
+    // Which way round the first riser appears shows whether it is seen from the foot.
+    const double turn = (first[1].x - first[0].x) * (first[2].y - first[1].y) -
+                        (first[1].y - first[0].y) * (first[2].x - first[1].x);
+    for (int k = 0; k < stairs_.steps; ++k) {
+      const int i = turn > 0.0 ? stairs_.steps - 1 - k : k;
+      const double ahead = i * run, top = stairs_.foot.z() + (i + 0.5) * rise;
+      if (turn <= 0.0) face(side(ahead, top - rise, ahead, top), 0.5);
+      if (i + 1 < stairs_.steps) face(side(ahead, top, ahead + run, top), 1.0);
+      if (turn > 0.0) face(side(ahead, top - rise, ahead, top), 0.6);
+    }
   }
 
   const LayerScene& scene_;

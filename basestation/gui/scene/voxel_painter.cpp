@@ -4,130 +4,112 @@
 #include <algorithm>
 #include <cmath>
 
+#include "basestation/gui/scene/mark_list.hpp"
+
 namespace adit::gui {
 namespace {
 
-constexpr float kFar = 1e9F;
-constexpr int kColours = 256;
-constexpr double kCover = 1.45;    // Width of a square in edges of a voxel: diagonal rows leave no gaps.
-constexpr int kMaxSplat = 96;      // Pixels: a voxel that is nearer than half a metre.
-constexpr float kLighting = 4.0F;  // Strength of the shading.
-constexpr float kDarkest = 0.35F;  // No edge is darker than this share.
+constexpr double kCover = 1.45;     // Width of a square in edges of a voxel: diagonal rows leave no gaps.
+constexpr float kSidesFrom = 3.5F;  // Voxels that are larger, pixels, are drawn side by side.
+constexpr std::array kShades{0.72, 0.52, 1.0};  // Brightness of sides across x, y and z.
+
+/// The corners of the side across each axis at 0, in edges, around it.
+constexpr std::array<std::array<std::array<float, 3>, 4>, 3> kSquares{
+    {{{{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}}},
+     {{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}},
+     {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}}}};
+
+std::array<float, 3> floats(const Point3& p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
 
 }  // namespace
 
+double grid_step(const OrbitCamera& camera) {
+  return bar_length(camera.focal() / camera.distance, VoxelPainter::kGridPixels);
+}
+
 void VoxelPainter::draw_brick(const VoxelScene::Brick& brick, int level, double edge) {
+  using Axes = std::array<float, kAxes>;
   const auto axes = camera_.axes();
-  const Point3 eye = camera_.eye();
-  const Point3 first = Point3{brick.x + edge / 2, brick.y + edge / 2, edge / 2} - eye;
-  const float base_x = static_cast<float>(dot(first, axes[0])),
-              base_y = static_cast<float>(dot(first, axes[1])),
-              base_z = static_cast<float>(dot(first, axes[2]));
-  const auto e = static_cast<float>(edge);
-  const float xx = e * static_cast<float>(axes[0].x), xy = e * static_cast<float>(axes[0].y),
-              xz = e * static_cast<float>(axes[0].z), yx = e * static_cast<float>(axes[1].x),
-              yy = e * static_cast<float>(axes[1].y), yz = e * static_cast<float>(axes[1].z),
-              zx = e * static_cast<float>(axes[2].x), zy = e * static_cast<float>(axes[2].y),
-              zz = e * static_cast<float>(axes[2].z);
-  const auto focal = static_cast<float>(camera_.focal());
-  const float middle_x = static_cast<float>(width_) / 2, middle_y = static_cast<float>(height_) / 2;
+  const Axes right = floats(axes[0]), down = floats(axes[1]), ahead = floats(axes[2]);
+  const Axes corner = floats(Point3{brick.x, brick.y, 0.0} - camera_.eye());
+  const auto e = static_cast<float>(edge), focal = static_cast<float>(camera_.focal());
+  const float middle_x = static_cast<float>(camera_.width / 2),
+              middle_y = static_cast<float>(camera_.height / 2);
+  const auto along = [](const Axes& a, const Axes& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
   const int lowest = static_cast<int>(std::ceil(std::clamp(slice_.low / edge - 0.5, -40000.0, 40000.0)));
   const int highest = static_cast<int>(std::floor(std::clamp(slice_.high / edge - 0.5, -40000.0, 40000.0)));
+  const float per_metre = HeightColours::kColours / static_cast<float>(colours_.high() - colours_.low());
+  const float first_shade = (0.5F * e - static_cast<float>(colours_.low())) * per_metre;
   for (const VoxelScene::Voxel& voxel : brick.levels[static_cast<std::size_t>(level)]) {
     if (voxel.z < lowest || voxel.z > highest) continue;
-    const float x = voxel.x, y = voxel.y, z = voxel.z;
-    const float depth = base_z + x * zx + y * zy + z * zz;
-    if (depth < static_cast<float>(OrbitCamera::kNear)) continue;
-    const float scale = focal / depth;
-    const float at_x = middle_x + (base_x + x * xx + y * xy + z * xz) * scale;
-    const float at_y = middle_y + (base_y + x * yx + y * yy + z * yz) * scale;
-    const float half = std::min(0.5F * static_cast<float>(kCover) * e * scale, kMaxSplat / 2.0F);
-    if (!(at_x + half >= 0 && at_y + half >= 0 && at_x - half < static_cast<float>(width_) &&
-          at_y - half < static_cast<float>(height_)))
+    unsigned sides = voxel.sides;
+    if (voxel.z == lowest) sides |= VoxelScene::bottom;  // The slice opens it.
+    if (voxel.z == highest) sides |= VoxelScene::top;
+    // From the eye to its low corner, and the plane of the side that faces the eye across each axis, m.
+    const Axes low{corner[0] + static_cast<float>(voxel.x) * e, corner[1] + static_cast<float>(voxel.y) * e,
+                   corner[2] + static_cast<float>(voxel.z) * e};
+    Axes plane{};
+    std::array<bool, kAxes> seen{};
+    bool any = false;
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      const bool from_low = low[i] > 0.0F, from_high = low[i] + e < 0.0F;
+      plane[i] = from_low ? low[i] : low[i] + e;
+      seen[i] = (from_low && (sides & (1U << (2 * i)))) || (from_high && (sides & (2U << (2 * i))));
+      any = any || seen[i];
+    }
+    if (!any) continue;
+    const Axes centre{low[0] + e / 2, low[1] + e / 2, low[2] + e / 2};
+    const float depth = along(centre, ahead);
+    if (depth < static_cast<float>(OrbitCamera::kNear) + e) continue;
+    const float inverse = 1.0F / depth, scale = focal * inverse;
+    const float x = middle_x + along(centre, right) * scale, y = middle_y + along(centre, down) * scale;
+    const float half = 0.5F * static_cast<float>(kCover) * e * scale;
+    if (!(x + half >= 0 && y + half >= 0 && x - half < static_cast<float>(width()) &&
+          y - half < static_cast<float>(height())))
       continue;
-    const int left = std::max(0, static_cast<int>(at_x - half + 0.5F)),
-              top = std::max(0, static_cast<int>(at_y - half + 0.5F));
-    const int right = std::min(width_, std::max(left + 1, static_cast<int>(at_x + half + 0.5F))),
-              bottom = std::min(height_, std::max(top + 1, static_cast<int>(at_y + half + 0.5F)));
-    const int shade = static_cast<int>(((voxel.z + 0.5) * edge - lowest_) * per_metre_);
-    const std::uint32_t colour = colours_[static_cast<std::size_t>(std::clamp(shade, 0, kColours - 1))];
     ++drawn_;
-    for (int row = top; row < bottom; ++row) {
-      const std::size_t line = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_);
-      for (int column = left; column < right; ++column) {
-        const std::size_t at = line + static_cast<std::size_t>(column);
-        if (depth_[at] <= depth) continue;
-        depth_[at] = depth;
-        pixels_[at] = colour;
+    const int shade = static_cast<int>(first_shade + static_cast<float>(voxel.z) * e * per_metre);
+    const auto colour = static_cast<std::size_t>(std::clamp(shade, 0, HeightColours::kColours - 1));
+    if (e * scale < kSidesFrom) {
+      // The largest side stands for the voxel.
+      std::size_t widest = 0;
+      for (std::size_t i = 1; i < kAxes; ++i)
+        if (seen[i] && (!seen[widest] || std::abs(centre[i]) > std::abs(centre[widest]))) widest = i;
+      const float reach = 1.5F * e * inverse * inverse;
+      picture_.square(x, y, half, planes_[widest].times(1.0F / plane[widest]), inverse - reach,
+                      inverse + reach, shades_[widest][colour]);
+      continue;
+    }
+    for (std::size_t i = 0; i < kAxes; ++i) {
+      if (!seen[i]) continue;
+      std::array<std::array<float, 2>, 4> corners{};
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        Axes at{low[0] + kSquares[i][k][0] * e, low[1] + kSquares[i][k][1] * e,
+                low[2] + kSquares[i][k][2] * e};
+        at[i] = plane[i];
+        const float to_screen = focal / along(at, ahead);
+        corners[k] = {middle_x + along(at, right) * to_screen, middle_y + along(at, down) * to_screen};
       }
+      picture_.quadrangle(corners, planes_[i].times(1.0F / plane[i]), shades_[i][colour]);
     }
   }
 }
 
-/// Darkens what has something nearer beside it.
-void VoxelPainter::light(Rgb ground) {
-  const std::uint32_t empty = 0xFF000000U | ground;
-  const auto width = static_cast<std::ptrdiff_t>(width_);
-  for (int row = 0; row < height_; ++row)
-    for (int column = 0; column < width_; ++column) {
-      const std::ptrdiff_t at = row * width + column;
-      const float depth = depth_[static_cast<std::size_t>(at)];
-      std::uint32_t& pixel = pixels_[static_cast<std::size_t>(at)];
-      if (depth == kFar) {
-        pixel = empty;
-        continue;
-      }
-      float nearer = 0.0F;
-      const auto look = [&](std::ptrdiff_t other) {
-        nearer += std::max(0.0F, depth - depth_[static_cast<std::size_t>(other)]);
-      };
-      if (column > 0) look(at - 1);
-      if (column + 1 < width_) look(at + 1);
-      if (row > 0) look(at - width);
-      if (row + 1 < height_) look(at + width);
-      const float share = std::max(kDarkest, 1.0F / (1.0F + kLighting * nearer / depth * 10.0F));
-      if (share > 0.99F) continue;
-      std::uint32_t out = 0xFF000000U;
-      for (const int shift : {0, 8, 16})
-        out |= static_cast<std::uint32_t>(static_cast<float>((pixel >> shift) & 0xFFU) * share) << shift;
-      pixel = out;
-    }
-}
-
-void VoxelPainter::paint(const VoxelScene& scene, const OrbitCamera& camera, const Slice& slice,
-                         const Palette& palette, Detail3 detail) {
-  camera_ = camera;
-  slice_ = slice;
-  width_ = static_cast<int>(std::clamp(std::ceil(camera.width), 1.0, double{kMaxSide}));
-  height_ = static_cast<int>(std::clamp(std::ceil(camera.height), 1.0, double{kMaxSide}));
-  const std::size_t size = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  pixels_.assign(size, 0xFF000000U | palette.ground);
-  depth_.assign(size, kFar);
-  drawn_ = 0;
-  if (scene.empty()) return;
-
-  lowest_ = std::max(scene.low().z, slice.low);
-  const double highest = std::min(scene.high().z, slice.high);
-  per_metre_ = kColours / std::max(highest - lowest_, 0.5);
-  colours_.resize(kColours);
-  for (std::size_t i = 0; i < colours_.size(); ++i) {
-    const double share = static_cast<double>(i) / (kColours - 1);
-    colours_[i] = 0xFF000000U | (share < 0.5 ? mixed(palette.floor, palette.low, 2 * share)
-                                             : mixed(palette.low, palette.high, 2 * share - 1));
-  }
-
+void VoxelPainter::draw_bricks(const VoxelScene& scene, Detail3 detail) {
   struct Seen {
     const VoxelScene::Brick* brick{};
     double nearest{};
   };
   std::vector<Seen> seen;
-  const auto axes = camera.axes();
-  const Point3 eye = camera.eye();
+  const auto axes = camera_.axes();
+  const Point3 eye = camera_.eye();
   const double side = VoxelScene::kSide * scene.edge();
   const double tan_y = std::tan(OrbitCamera::kHalfView),
-               tan_x = tan_y * camera.width / std::max(camera.height, 1.0);
+               tan_x = tan_y * camera_.width / std::max(camera_.height, 1.0);
   for (const VoxelScene::Brick* brick : scene.bricks()) {
-    if (brick->high <= slice.low || brick->low >= slice.high) continue;
+    if (brick->high <= slice_.low || brick->low >= slice_.high) continue;
     const Point3 centre =
         Point3{brick->x + side / 2, brick->y + side / 2, (brick->low + brick->high) / 2} - eye;
     const double radius = std::hypot(side / 2, side / 2, (brick->high - brick->low) / 2);
@@ -149,13 +131,63 @@ void VoxelPainter::paint(const VoxelScene& scene, const OrbitCamera& camera, con
   for (const Seen& next : seen) {
     int level = 0;
     double edge = scene.edge();
-    while (level + 1 < VoxelScene::kLevels && 2 * edge * camera.focal() / next.nearest <= coarsest) {
+    while (level + 1 < VoxelScene::kLevels && 2 * edge * camera_.focal() / next.nearest <= coarsest) {
       ++level;
       edge *= 2;
     }
     draw_brick(*next.brick, level, edge);
   }
-  light(palette.ground);
+}
+
+void VoxelPainter::draw_grid(const VoxelScene& scene, const Palette& palette) {
+  constexpr double kMostLines = 200.0, kShare = 0.55;
+  const double step = grid_step(camera_), z = std::max(scene.low().z, colours_.low());
+  const auto down_to = [step](double v) { return std::floor(v / step - 1e-9) * step; };
+  const auto up_to = [step](double v) { return std::ceil(v / step + 1e-9) * step; };
+  const Point low{down_to(scene.low().x), down_to(scene.low().y)},
+      high{up_to(scene.high().x), up_to(scene.high().y)};
+  if ((high.x - low.x + high.y - low.y) / step > kMostLines) return;
+  const Point3 ahead = camera_.axes()[2], eye = camera_.eye();
+  const auto draw = [&](Point3 from, Point3 to) {
+    // What is behind the camera is cut off.
+    const double near = 2 * OrbitCamera::kNear, a = dot(from - eye, ahead), b = dot(to - eye, ahead);
+    if (a < near && b < near) return;
+    if (a < near) from = from + ((near - a) / (b - a)) * (to - from);
+    if (b < near) to = from + ((near - a) / (b - a)) * (to - from);
+    const auto one = camera_.project(from), two = camera_.project(to);
+    if (one && two)
+      picture_.line({one->at.x, one->at.y, 1.0 / one->depth}, {two->at.x, two->at.y, 1.0 / two->depth},
+                    palette.edge, kShare);
+  };
+  for (double x = low.x; x < high.x + step / 2; x += step) draw({x, low.y, z}, {x, high.y, z});
+  for (double y = low.y; y < high.y + step / 2; y += step) draw({low.x, y, z}, {high.x, y, z});
+}
+
+void VoxelPainter::paint(const VoxelScene& scene, const OrbitCamera& camera, const Slice& slice,
+                         const Palette& palette, Detail3 detail) {
+  camera_ = camera;
+  slice_ = slice;
+  picture_.clear(camera.width, camera.height, palette.ground);
+  drawn_ = 0;
+  colours_ = HeightColours(scene, slice);
+  if (scene.empty()) return;
+  for (std::size_t i = 0; i < HeightColours::kColours; ++i) {
+    const Rgb plain = colours_.at(colours_.low() + (static_cast<double>(i) + 0.5) / HeightColours::kColours *
+                                                       (colours_.high() - colours_.low()));
+    for (std::size_t axis = 0; axis < kAxes; ++axis)
+      shades_[axis][i] = 0xFF000000U | mixed(0, plain, kShades[axis]);
+  }
+  // The line of sight through a pixel's centre, of depth 1 m: how far it goes along each axis.
+  const auto axes = camera.axes();
+  const auto focal = static_cast<float>(camera.focal());
+  const auto right = floats(axes[0]), down = floats(axes[1]), ahead = floats(axes[2]);
+  const float x = (0.5F - static_cast<float>(camera.width / 2)) / focal,
+              y = (0.5F - static_cast<float>(camera.height / 2)) / focal;
+  for (std::size_t i = 0; i < kAxes; ++i)
+    planes_[i] = {ahead[i] + x * right[i] + y * down[i], right[i] / focal, down[i] / focal};
+  draw_bricks(scene, detail);
+  picture_.light();
+  draw_grid(scene, palette);
 }
 
 std::optional<Point3> VoxelPainter::pick(double x, double y) const {
@@ -164,13 +196,12 @@ std::optional<Point3> VoxelPainter::pick(double x, double y) const {
   double best = 1e9;
   for (int row = static_cast<int>(y) - kReach; row <= static_cast<int>(y) + kReach; ++row)
     for (int column = static_cast<int>(x) - kReach; column <= static_cast<int>(x) + kReach; ++column) {
-      if (row < 0 || column < 0 || row >= height_ || column >= width_) continue;
-      const float depth = depth_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
-                                 static_cast<std::size_t>(column)];
+      if (row < 0 || column < 0 || row >= height() || column >= width()) continue;
+      const float inverse = picture_.inverse_depth(column, row);
       const double away = std::hypot(column + 0.5 - x, row + 0.5 - y);
-      if (depth == kFar || away >= best) continue;
+      if (inverse <= 0.0F || away >= best) continue;
       best = away;
-      nearest = camera_.to_map(x, y, depth);
+      nearest = camera_.to_map(x, y, 1.0 / static_cast<double>(inverse));
     }
   return nearest;
 }

@@ -16,16 +16,59 @@ constexpr int kPerTile = MapTile::kSide / VoxelScene::kSide;
 /// Half of it, rounded down.
 std::int16_t half(int z) { return static_cast<std::int16_t>(z >= 0 ? z / 2 : -((1 - z) / 2)); }
 
+Voxel voxel_at(int x, int y, int z) {
+  Voxel out;
+  out.x = static_cast<unsigned>(x) % VoxelScene::kSide;
+  out.y = static_cast<unsigned>(y) % VoxelScene::kSide;
+  out.z = static_cast<std::int16_t>(z);
+  return out;
+}
+
 std::vector<Voxel> coarser(const std::vector<Voxel>& fine) {
   std::vector<Voxel> out;
   out.reserve(fine.size());
-  for (const Voxel& voxel : fine)
-    out.push_back(
-        {static_cast<std::uint8_t>(voxel.x / 2), static_cast<std::uint8_t>(voxel.y / 2), half(voxel.z)});
+  for (const Voxel& voxel : fine) out.push_back(voxel_at(voxel.x / 2, voxel.y / 2, half(voxel.z)));
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   out.shrink_to_fit();
   return out;
+}
+
+/// Which voxels of one level of a tile stand in the open, in a grid with an empty rim. A tile that is too
+/// tall for it keeps all of its sides.
+void find_sides(std::vector<Brick>& bricks, const MapTile& tile, int level, double edge) {
+  constexpr int kTallest = 1000;  // Voxels.
+  int low = INT16_MAX, high = INT16_MIN;
+  for (const Brick& brick : bricks)
+    for (const Voxel& voxel : brick.levels[static_cast<std::size_t>(level)]) {
+      low = std::min<int>(low, voxel.z);
+      high = std::max<int>(high, voxel.z);
+    }
+  const int side = VoxelScene::kSide >> level;
+  const std::ptrdiff_t row = (MapTile::kSide >> level) + 2, layer = row * row;
+  std::vector<std::uint8_t> filled;
+  if (high - low < kTallest) filled.resize(static_cast<std::size_t>(std::max(high - low + 3, 0) * layer));
+  const auto each = [&](auto&& act) {
+    for (Brick& brick : bricks) {
+      const auto column_of = [&](double corner, int index) {
+        const double from_tile = corner / edge - static_cast<double>(index) * MapTile::kSide;
+        return static_cast<int>(std::lround(from_tile)) / VoxelScene::kSide * side;
+      };
+      const std::ptrdiff_t first =
+          (1 - low) * layer + (column_of(brick.y, tile.y) + 1) * row + column_of(brick.x, tile.x) + 1;
+      for (Voxel& voxel : brick.levels[static_cast<std::size_t>(level)])
+        act(voxel, first + voxel.z * layer + voxel.y * row + voxel.x);
+    }
+  };
+  if (filled.empty()) return each([](Voxel& voxel, std::ptrdiff_t) { voxel.sides = VoxelScene::all; });
+  each([&](Voxel&, std::ptrdiff_t at) { filled[static_cast<std::size_t>(at)] = 1; });
+  const std::array<std::ptrdiff_t, 6> beside{-1, 1, -row, row, -layer, layer};
+  each([&](Voxel& voxel, std::ptrdiff_t at) {
+    unsigned sides = 0;
+    for (std::size_t i = 0; i < beside.size(); ++i)
+      sides |= filled[static_cast<std::size_t>(at + beside[i])] ? 0U : 1U << i;
+    voxel.sides = sides & VoxelScene::all;
+  });
 }
 
 std::vector<Brick> bricks_of(const MapTile& tile, double edge) {
@@ -35,9 +78,7 @@ std::vector<Brick> bricks_of(const MapTile& tile, double edge) {
     Brick& brick =
         parts[static_cast<std::size_t>(row / VoxelScene::kSide * kPerTile + column / VoxelScene::kSide)];
     for (int z = run.z; z < run.z + run.length && z <= INT16_MAX; ++z)
-      brick.levels[0].push_back({static_cast<std::uint8_t>(column % VoxelScene::kSide),
-                                 static_cast<std::uint8_t>(row % VoxelScene::kSide),
-                                 static_cast<std::int16_t>(z)});
+      brick.levels[0].push_back(voxel_at(column, row, z));
   }
   std::vector<Brick> out;
   for (int i = 0; i < kPerTile * kPerTile; ++i) {
@@ -45,13 +86,19 @@ std::vector<Brick> bricks_of(const MapTile& tile, double edge) {
     if (brick.levels[0].empty()) continue;
     brick.x = (static_cast<double>(tile.x) * MapTile::kSide + i % kPerTile * VoxelScene::kSide) * edge;
     brick.y = (static_cast<double>(tile.y) * MapTile::kSide + i / kPerTile * VoxelScene::kSide) * edge;
-    const auto [low, high] = std::ranges::minmax(brick.levels[0], {}, &Voxel::z);
-    brick.low = low.z * edge;
-    brick.high = (high.z + 1) * edge;
+    brick.first = {VoxelScene::kSide, VoxelScene::kSide};
+    for (const Voxel& voxel : brick.levels[0]) {
+      brick.first = {std::min<int>(brick.first[0], voxel.x), std::min<int>(brick.first[1], voxel.y)};
+      brick.last = {std::max<int>(brick.last[0], voxel.x), std::max<int>(brick.last[1], voxel.y)};
+      ++brick.heights[voxel.z];
+    }
+    brick.low = brick.heights.begin()->first * edge;
+    brick.high = (brick.heights.rbegin()->first + 1) * edge;
     for (std::size_t level = 1; level < VoxelScene::kLevels; ++level)
       brick.levels[level] = coarser(brick.levels[level - 1]);
     out.push_back(std::move(brick));
   }
+  for (int level = 0; level < VoxelScene::kLevels; ++level) find_sides(out, tile, level, edge);
   return out;
 }
 
@@ -74,13 +121,27 @@ void VoxelScene::measure() {
   voxels_ = 0;
   low_ = {1e9, 1e9, 1e9};
   high_ = {-1e9, -1e9, -1e9};
-  const double side = kSide * edge_;
+  heights_.clear();
   for (const Brick* brick : bricks()) {
     voxels_ += brick->levels[0].size();
-    low_ = {std::min(low_.x, brick->x), std::min(low_.y, brick->y), std::min(low_.z, brick->low)};
-    high_ = {std::max(high_.x, brick->x + side), std::max(high_.y, brick->y + side),
-             std::max(high_.z, brick->high)};
+    for (const auto& [z, count] : brick->heights) heights_[z] += count;
   }
+  for (const Point3& corner : corners(-1e9, 1e9)) {
+    low_ = {std::min(low_.x, corner.x), std::min(low_.y, corner.y), std::min(low_.z, corner.z)};
+    high_ = {std::max(high_.x, corner.x), std::max(high_.y, corner.y), std::max(high_.z, corner.z)};
+  }
+}
+
+std::vector<Point3> VoxelScene::corners(double from, double to) const {
+  std::vector<Point3> out;
+  for (const Brick* brick : bricks()) {
+    if (brick->low >= to || brick->high <= from) continue;
+    for (const int x : {brick->first[0], brick->last[0] + 1})
+      for (const int y : {brick->first[1], brick->last[1] + 1})
+        for (const double z : {std::max(brick->low, from), std::min(brick->high, to)})
+          out.push_back({brick->x + x * edge_, brick->y + y * edge_, z});
+  }
+  return out;
 }
 
 std::vector<const Brick*> VoxelScene::bricks() const {
