@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kRoomUp = 1.5;  ///< Times the least rate, before a rung is entered.
 constexpr Duration kRoomTime = 3s;
-constexpr double kLearn = 0.2;  ///< Weight of a picture in the means.
+constexpr double kLearn = 0.2;     ///< Weight of a picture in the means.
+constexpr int kFirstPictures = 5;  ///< Of a rung, from which its own size is learned.
 constexpr double kMinOwn = 0.25, kMaxOwn = 4.0;
 
 struct RungPrior {
@@ -49,10 +50,13 @@ Ladder::Ladder() {
 double Ladder::whole_bytes(std::size_t rung) const { return kLadder[rung].bytes * scene_ * own_[rung]; }
 
 std::size_t Ladder::highest(const LadderInput& input, double room) const {
+  // More pixels than are looked at are of no use.
+  std::uint16_t widest = kLadder.back().rung.width;
+  for (std::size_t i = kRungs; i-- > 0;)
+    if (kLadder[i].rung.width >= input.most_width) widest = kLadder[i].rung.width;
   std::size_t best = 0;
   for (std::size_t i = 1; i < kRungs; ++i) {
-    // More pixels than are looked at are of no use.
-    if (kLadder[i].rung.width > input.most_width && kLadder[i - 1].rung.width >= input.most_width) break;
+    if (kLadder[i].rung.width > widest) break;
     const double rate = std::min(kLadder[i].rung.least_rate * room, input.most_rate);
     if (whole_bytes(i) * rate <= input.bytes_per_second) best = i;
   }
@@ -95,12 +99,13 @@ void Ladder::coded(const Rung& rung, std::size_t bytes, bool whole) {
   const auto size = static_cast<double>(bytes);
   if (whole) {
     const double ratio = size / whole_bytes(index);
-    // On another rung than before, the first difference is the rung's; later ones are the scene's.
-    if (coded_ && *coded_ != index)
-      own_[index] = std::clamp(own_[index] * ratio, kMinOwn, kMaxOwn);
-    else
-      scene_ *= coded_ ? std::pow(ratio, kLearn) : ratio;
-    coded_ = index;
+    // The difference of a rung's first pictures is the rung's, that of later ones is the scene's.
+    if (!first_) first_ = index;
+    const bool is_new = learned_[index] < kFirstPictures;
+    const double weight = is_new ? 1.0 / ++learned_[index] : kLearn;
+    double& factor = is_new && *first_ != index ? own_[index] : scene_;
+    factor = factor * std::pow(ratio, weight);
+    own_[index] = std::clamp(own_[index], kMinOwn, kMaxOwn);
   }
   // At once when pictures grow, as the link is overloaded otherwise; slowly when they shrink.
   if (rung_ == index) actual_ = std::max(size, actual_.value_or(size) * (1.0 - kLearn) + size * kLearn);

@@ -63,7 +63,8 @@ class Ladder {
   // rung.
   double scene_{1.0};
   std::array<double, kRungs> own_{};
-  std::optional<std::size_t> coded_{};  ///< Rung of the last whole picture.
+  std::array<int, kRungs> learned_{};   ///< Pictures from which own_ was learned.
+  std::optional<std::size_t> first_{};  ///< The first rung of which there was a whole picture.
   std::optional<double> actual_{};      ///< Mean bytes of a picture on rung_.
 };
 
