@@ -42,6 +42,7 @@ ShownPicture shown(const station::CommandOutcome& outcome, const QImage& former)
   auto pixels = perception::decode_jpeg_tolerant(received->jpeg, kMaxShownSide, kMaxShownSide);
   if (!pixels) return {.number = received->number, .problem = text_of(pixels.error().text)};
   ShownPicture out{.number = received->number, .age = received->age};
+  out.unmarked = image_of(*pixels);
   if (!received->missing.empty()) {
     const perception::PictureFormat format{.width = static_cast<std::uint16_t>(received->width),
                                            .height = static_cast<std::uint16_t>(received->height),
@@ -51,7 +52,7 @@ ShownPicture shown(const station::CommandOutcome& outcome, const QImage& former)
       perception::mark_missing(*pixels, format, received->missing, received->absent, pixels_of(former));
     for (const std::uint8_t bits : received->missing) out.missing += std::popcount(bits);
   }
-  out.image = image_of(*pixels);
+  out.image = received->missing.empty() ? out.unmarked : image_of(*pixels);
   return out;
 }
 

@@ -15,6 +15,7 @@ namespace adit::gui {
 /// A picture of a camera as the window shows it.
 struct ShownPicture {
   QImage image{};          ///< Null: there is no newer one.
+  QImage unmarked{};       ///< The same without marks of what is missing, for the next picture.
   std::uint64_t number{};  ///< Of the picture; 0: none.
   double age{};            ///< From its exposure, when the station sent it, s.
   int missing{};           ///< Stripes that are not of this picture.
@@ -34,7 +35,7 @@ class CameraFeeds : public QObject {
   CameraFeeds(CommandSink& sink, QObject* parent);
   ~CameraFeeds() override { pool_.waitForDone(); }
 
-  /// Asks for the next picture. `former`: the one that is shown. `done` is called once, in the window's
+  /// Asks for the next picture. `former`: the unmarked one of the picture before. `done` is called once, in the window's
   /// thread, unless this is destroyed first.
   void next(const station::CameraRequest& request, const QImage& former, Done done);
 

@@ -47,6 +47,7 @@ void CameraItem::restart() {
   ++run_;
   asked_ = false;
   image_ = {};
+  unmarked_ = {};
   problem_.clear();
   number_ = 0;
   period_ = 0;
@@ -68,7 +69,7 @@ void CameraItem::ask() {
                 .width = static_cast<std::uint16_t>(std::clamp(pixels, 64.0, 1920.0)),
                 .rate = static_cast<float>(rate_),
                 .after = number_},
-               image_, [self = QPointer(this), run = run_](const ShownPicture& picture) {
+               unmarked_, [self = QPointer(this), run = run_](const ShownPicture& picture) {
                  if (self) self->take(run, picture);
                });
 }
@@ -81,6 +82,7 @@ void CameraItem::take(std::uint64_t run, const ShownPicture& picture) {
   if (!picture.image.isNull()) {
     period_ = image_.isNull() ? 0.0 : std::min(10.0, static_cast<double>(since_.elapsed()) / 1000.0);
     image_ = picture.image;
+    unmarked_ = picture.unmarked;
     missing_ = picture.missing;
     delay_ = picture.age;
     since_.start();

@@ -61,7 +61,7 @@ class CameraItem : public QQuickPaintedItem {
   CameraFeeds* feeds_{};
   QString robot_{}, camera_{};
   double rate_{15.0};
-  QImage image_{};
+  QImage image_{}, unmarked_{};
   QString problem_{};
   int missing_{};
   std::uint64_t number_{};
