@@ -19,12 +19,11 @@ constexpr double kRounding = 0.5;  // Pixels.
 /// Targets in panels and rows, which are opened on purpose and where a miss does no harm, may be lower: by
 /// the names of their items, or the part before `_`.
 const std::set<QString> kLow{
-    "show",         "moreNeeds",       "commandToggle", "detailsToggle", "notNow",
-    "commandRun",   "commandClose",    "commandField",  "proposal",      "cure",
-    "closeDetails", "fitAll",          "solidToggle",   "cutToggle",     "areaToggle",
-    "zoomIn",       "zoomOut",         "logWarnings",   "logSelected",   "logExport",
-    "logTextInput", "receptionToggle", "hearingToggle", "see",           "later",
-    "markToggle"};
+    "show",         "moreNeeds",    "commandToggle", "detailsToggle", "notNow",          "commandRun",
+    "commandClose", "commandField", "proposal",      "cure",          "closeDetails",    "fitAll",
+    "solidToggle",  "cutToggle",    "followToggle",  "areaToggle",    "zoomIn",          "zoomOut",
+    "logWarnings",  "logSelected",  "logExport",     "logTextInput",  "receptionToggle", "hearingToggle",
+    "see",          "later",        "markToggle"};
 /// Texts that may be cut off: they are whole in another place, which is beside them.
 const std::map<QString, QString> kCut{{"budget", "the command net, with all that was not sent"}};
 

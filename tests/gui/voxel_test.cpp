@@ -309,7 +309,7 @@ TEST(HeightColours, AreTurbo) {
   // The table that its author published, which the polynomial approximates.
   const auto near = [](Rgb a, Rgb b) {
     for (const int shift : {0, 8, 16})
-      if (std::abs(static_cast<int>(a >> shift & 0xFF) - static_cast<int>(b >> shift & 0xFF)) > 12)
+      if (std::abs(static_cast<int>(a >> shift & 0xFF) - static_cast<int>(b >> shift & 0xFF)) > 24)
         return false;
     return true;
   };
