@@ -240,6 +240,7 @@ TEST_F(FloorsTest, InThreeDimensionsAllFloorsAreShownUntilOneIsChosen) {
   EXPECT_EQ(text("floorToggle"), "floor -1, auto");
   EXPECT_NEAR(solid().slice().low, -4.3, 0.2);
   EXPECT_NEAR(solid().slice().high, -1.8, 0.2);
+  for (const Point3& corner : solid().shown_corners()) EXPECT_LT(corner.z, -1.0) << "of the other floor";
   picture("solid_floor");
   touch(middle("floorUp"));
   EXPECT_EQ(text("floorToggle"), "floor 0");

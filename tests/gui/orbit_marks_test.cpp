@@ -121,6 +121,20 @@ TEST(OrbitMarks, ATrailIsAtTheHeightWhereTheRobotWas) {
   EXPECT_NEAR(line->points.back().y, end->at.y, 1e-3);
 }
 
+TEST(OrbitMarks, ARobotOutsideOfTheSliceIsPale) {
+  station::World world{.station = "op1"};
+  world.robots = {mine(gui::robot("r1", 0, 0))};
+  world.robots[0].z = -4.0F;
+  const auto opacity = [&](const Slice& slice) {
+    return orbit_marks({.world = &world, .camera = camera_over({0, 0, -4}), .slice = slice})
+        .labels.front()
+        .opacity;
+  };
+  EXPECT_EQ(opacity({}), 1.0);
+  EXPECT_EQ(opacity({.low = -4.0, .high = -1.8}), 1.0);
+  EXPECT_LT(opacity({.low = -0.3, .high = 2.2}), 0.5);
+}
+
 TEST(OrbitMarks, AxesPointAsTheMapLies) {
   MarkList marks;
   OrbitCamera camera = camera_over({0, 0, 0});

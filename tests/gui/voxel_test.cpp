@@ -313,7 +313,7 @@ TEST(HeightColours, AreTurbo) {
         return false;
     return true;
   };
-  EXPECT_PRED2(near, turbo(0.0), 0x30123B);
+  EXPECT_PRED2(near, turbo(0.25), 0x28BCEB);
   EXPECT_PRED2(near, turbo(0.5), 0xA4FC3C);
   EXPECT_PRED2(near, turbo(1.0), 0x7A0403);
 }

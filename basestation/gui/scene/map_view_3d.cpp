@@ -121,6 +121,7 @@ void MapView3D::refresh() {
   append(marks, orbit_marks({.world = &control_->world(),
                              .trails = &control_->trails(),
                              .camera = camera_,
+                             .slice = slice_,
                              .selection = control_->selection(),
                              .ghosts = ghosts_,
                              .silent = control_->silent_for(),
@@ -154,7 +155,7 @@ void MapView3D::set_fitting(bool fitting) {
 std::vector<Point3> MapView3D::shown_corners() const {
   std::vector<Point3> corners = voxels_->scene().corners(slice_.low, slice_.high);
   const auto add = [&](double x, double y, double z) {
-    if (drawable(x, y) && std::abs(z) < 1e5) corners.push_back({x, y, z});
+    if (drawable(x, y) && std::abs(z) < 1e5 && stands_in(slice_, z)) corners.push_back({x, y, z});
   };
   for (const station::Robot& robot : control_->world().robots)
     if (robot.located) add(robot.x, robot.y, robot.z);

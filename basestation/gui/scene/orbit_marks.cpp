@@ -136,7 +136,7 @@ class OrbitDrawer {
     const bool old =
         contact_of(robot, scene_.silent, scene_.trails ? scene_.trails->stale_after(robot.name) : 1.0) !=
         Contact::live;
-    const double opacity = old ? 0.55 : 1.0;
+    const double opacity = (old ? 0.55 : 1.0) * (stands_in(scene_.slice, centre.z) ? 1.0 : 0.4);
     const double extent = extent_of(robot), scale = scene_.camera.focal() / seen->depth;
     const double grow = std::max(1.0, kMinPixels / (extent * scale));
     const double ring = grow * (extent * 0.65 + 0.1);
