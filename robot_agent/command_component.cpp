@@ -552,14 +552,17 @@ void Agent::CommandComponent::send_pieces() {
 
 void Agent::CommandComponent::look(const transfer::PeerId& station, std::vector<contract::CameraView> views) {
   std::erase_if(views, [this](const contract::CameraView& view) { return view.robot != params_.name; });
-  if (!views.empty() && context_.shots)
-    protect([&] { ask_cameras({.station = station, .views = std::move(views)}); });
+  if (views.empty() || !context_.shots) return;
+  for (const contract::CameraView& view : views) context_.shots->wanted(station, view.camera, view.shot);
+  protect([&] { ask_cameras({.station = station, .views = std::move(views)}); });
 }
 
 void Agent::CommandComponent::ask_cameras(CameraOrder order) {
+  order.got = camera_batch_;
   call(context_.cameras, std::move(order), {.deadline = 1s}, [this](const Result<CameraAnswer>& answer) {
     if (!answer) return;  // The next view comes within a second.
     cameras_active_ = answer->active;
+    camera_batch_ = answer->batch;
     for (const TakenShot& shot : answer->shots) context_.shots->add(shot, now());
   });
 }
@@ -576,7 +579,9 @@ PlaceThen Agent::CommandComponent::place_then(const PlaceQuery& query) const {
     out.foreign_clock = std::abs(ahead) > kApart;
     if (!out.foreign_clock) {
       out.age = std::max<Duration>(out.age, Duration(ahead) + frames_.silence(at, at));
-      if (const auto then = frames_.T_odom_base_at(query.stamp)) T_odom_base = *then;
+      const auto then = frames_.T_odom_base_at(query.stamp);
+      if (then) T_odom_base = *then;
+      if (!then && ahead > 0) return out;  // Older than what is remembered.
     }
   }
   if (localiser_.recognised()) out.T_map_base = frames_.map_frame().T_map_odom * T_odom_base;

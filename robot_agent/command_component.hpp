@@ -200,6 +200,7 @@ class Agent::CommandComponent : public Component {
   bool gives_way_{};                         ///< It gives way to another robot of its name.
   RateLimit<bool> namesakes_reported_{10s};  // The key is `gives_way_`.
   RateLimit<int> refusals_reported_{10s};    // Under one key: a stranger may invent any number of names.
+  std::uint64_t camera_batch_{};             ///< Of the last answer of the component `cameras`.
   bool cameras_active_{};                    ///< A picture is wanted, or is being taken.
   BeaconRate beacon_rate_{};
   std::uint32_t beats_{};    ///< Number of calls of beat().

@@ -2,9 +2,11 @@
 #include "basestation/camera/cameras.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "adit/camera.h"
 #include "core/contract/camera.hpp"
+#include "core/time/random.hpp"
 #include "core/wire/typed.hpp"
 
 namespace adit::station {
@@ -14,6 +16,7 @@ constexpr Duration kThinViewsPeriod = 1s, kViewsPeriod = 400ms;  // Between two 
 constexpr double kThinLink = 250e3;                              // bit/s
 constexpr Duration kFarewell = 1500ms;  // A camera that is no longer looked at is named so for this time.
 constexpr Duration kLately = 4s;
+constexpr std::uint64_t kShotSalt = std::uint64_t{1} << 33;  // Beside those of content.cpp.
 constexpr std::size_t kMaxPictureWaits = 64;
 constexpr std::size_t kMaxLately = 4096;
 
@@ -26,7 +29,12 @@ struct Cameras::Ends {
 
 Cameras::Cameras(const StationParams& params, Executor& strand, wire::Participant& radio, Fleet& fleet,
                  const Presence& presence)
-    : params_(params), strand_(strand), radio_(radio), fleet_(fleet), presence_(presence) {}
+    : params_(params),
+      strand_(strand),
+      radio_(radio),
+      fleet_(fleet),
+      presence_(presence),
+      shots_(static_cast<std::uint32_t>(Random(params.seed).fork(kShotSalt).next())) {}
 
 Cameras::~Cameras() = default;
 
@@ -70,12 +78,18 @@ Result<Cameras::View*> Cameras::view_of(const Robot& robot, const std::string& c
 }
 
 Result<void> Cameras::set_on(const Robot& robot, const std::string& camera, bool on) {
-  const auto view = view_of(robot, camera);
-  if (!view) return view.error();
-  View& changed = **view;
-  changed.on = on;
-  if (!on) changed.front_end = {};
-  if (on && changed.width == 0) changed.width = kWidth, changed.rate = kRate;
+  if (!on) {
+    const auto name = named(robot, camera);
+    if (!name) return name.error();
+    const auto known = views_.find({robot, *name});
+    if (known == views_.end()) return {};
+    known->second.on = false;
+    known->second.front_end = {};
+  } else {
+    const auto view = view_of(robot, camera);
+    if (!view) return view.error();
+    (*view)->on = true;
+  }
   changed_ = true;
   if (on_change) on_change();
   return {};
@@ -87,8 +101,8 @@ Result<void> Cameras::look(const Robot& robot, const std::string& camera, std::u
   View& shown = **view;
   const auto bounded = std::min(width, contract::CameraView::kMaxWidth);
   const float often = std::clamp(rate, 0.1F, contract::CameraView::kMaxRate);
-  // Of several front ends the one that wants most counts while it looks.
-  if (!is_looked_at(shown)) shown.width = 0, shown.rate = 0;
+  // Of several front ends the one that wants most counts while any looks.
+  if (shown.front_end <= strand_.now()) shown.width = 0, shown.rate = 0;
   changed_ = changed_ || bounded > shown.width || often > shown.rate;
   shown.width = std::max(shown.width, bounded);
   shown.rate = std::max(shown.rate, often);
@@ -112,6 +126,12 @@ void Cameras::next(const Robot& robot, const std::string& camera, std::uint64_t 
 Result<void> Cameras::shoot(const Robot& robot, const std::string& camera, ShotDesk::Done done) {
   const auto name = named(robot, camera);
   if (!name) return name.error();
+  const auto awaited = shots_.awaited_cameras();
+  const bool known =
+      views_.contains({robot, *name}) || std::ranges::find(awaited, Key{robot, *name}) != awaited.end();
+  if (!known && views_.size() + awaited.size() >= kMost)
+    return Error{Reason::queue_full,
+                 "more cameras than can be looked at: switch one off with `camera R off`"};
   if (const auto opened = open(); !opened) return opened.error();
   if (shots_.await(robot, *name, strand_.now(), std::move(done)) == 0)
     return Error{Reason::queue_full, "more pictures than can be awaited at once"};
@@ -136,19 +156,21 @@ void Cameras::take(const radio::CameraPiece& sample, const wire::SampleInfo& inf
   const auto& before = view.store.newest();
   const bool other = before && (before->run != picture->header.run || before->frame != picture->header.frame);
   // What lacks of the picture before does not come any more.
-  if (other && view.shown != before->frame) show(found->first, view);
+  if (other) show(found->first, view);
   if (!view.store.take(*picture)) return;
   view.lately.emplace_back(info.received, piece->data.size());
   while (view.lately.size() > kMaxLately) view.lately.pop_front();
-  view.exposed = info.received - std::chrono::milliseconds(picture->header.age);
+  view.arriving = info.received - std::chrono::milliseconds(picture->header.age);
   const bool last = picture->header.number + 1 == picture->header.pieces;
   if (last || view.store.is_complete()) show(found->first, view);
 }
 
 void Cameras::show(const Key& key, View& view) {
   const perception::PictureHeader& header = *view.store.newest();
-  if (view.shown == header.frame) return;
+  if (view.shown == header.frame && view.shown_run == header.run) return;
   view.shown = header.frame;
+  view.shown_run = header.run;
+  view.exposed = view.arriving;
   view.newest = {.robot = key.first,
                  .camera = key.second,
                  .number = ++pictures_,
@@ -195,19 +217,20 @@ void Cameras::tick() {
   if (!ends_) return;
   const Time now = strand_.now();
   shots_.tick(now);
+  if (!presence_.up()) {
+    shots_.cancel_all();
+    for (auto& [key, view] : views_) view.on = false, view.front_end = {};
+  }
   bool dropped = false;
   for (auto& [key, view] : views_) {
     while (!view.lately.empty() && now - view.lately.front().first > kLately) view.lately.pop_front();
     while (!view.pictures.empty() && now - view.pictures.front() > kLately) view.pictures.pop_front();
-    for (auto waiting = view.waiting.begin(); waiting != view.waiting.end();) {
-      if (waiting->until > now) {
-        ++waiting;
-        continue;
-      }
-      const Taken taken = std::move(waiting->taken);
-      waiting = view.waiting.erase(waiting);
-      taken({.robot = key.first, .camera = key.second});
-    }
+    const auto late = std::stable_partition(view.waiting.begin(), view.waiting.end(),
+                                            [&](const Waiting& each) { return each.until > now; });
+    // A front end that is answered may ask again.
+    std::vector<Waiting> ended(std::make_move_iterator(late), std::make_move_iterator(view.waiting.end()));
+    view.waiting.erase(late, view.waiting.end());
+    for (const Waiting& each : ended) each.taken({.robot = key.first, .camera = key.second});
     if (is_looked_at(view))
       view.ends = now + kFarewell;
     else
@@ -220,6 +243,8 @@ void Cameras::tick() {
     if (on_change) on_change();
   }
   send();
+  // A reader that is left costs robots a copy of each picture that others look at.
+  if (views_.empty() && shots_.awaited_cameras().empty()) ends_.reset();
 }
 
 void Cameras::send() {
@@ -231,10 +256,10 @@ void Cameras::send() {
   for (const auto& [key, view] : views_) {
     contract::CameraView& out = message.views.emplace_back(contract::CameraView{
         .robot = key.first, .camera = key.second, .shot = shots_.awaited(key.first, key.second)});
-    if (is_looked_at(view)) {
-      out.width = view.width;
-      out.rate = view.rate;
-    }
+    const bool front_end = view.front_end > now;
+    out.width = std::max<std::uint16_t>(view.on ? kWidth : 0, front_end ? view.width : 0);
+    out.rate = std::max(view.on ? kRate : 0.0F, front_end ? view.rate : 0.0F);
+    shots_.asked(out.shot, now);
     if (const auto& newest = view.store.newest()) {
       out.run = newest->run;
       out.frame = newest->frame;
@@ -243,8 +268,11 @@ void Cameras::send() {
     }
   }
   for (const auto& [robot, camera] : shots_.awaited_cameras())
-    if (!views_.contains({robot, camera}) && message.views.size() < contract::CameraViews::kMaxViews)
-      message.views.push_back({.robot = robot, .camera = camera, .shot = shots_.awaited(robot, camera)});
+    if (!views_.contains({robot, camera}) && message.views.size() < contract::CameraViews::kMaxViews) {
+      const std::uint32_t number = shots_.awaited(robot, camera);
+      shots_.asked(number, now);
+      message.views.push_back({.robot = robot, .camera = camera, .shot = number});
+    }
   if (message.views.empty()) return;
   sent_ = now;
   changed_ = false;

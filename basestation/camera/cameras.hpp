@@ -24,8 +24,8 @@ class CameraViews;
 namespace adit::station {
 
 /// The cameras of all robots, as this station looks at them: what it asks robots for, and the newest live
-/// picture of each camera. The ends of the topics are opened when something is looked at for the first time,
-/// so that a station that shows no pictures causes no traffic.
+/// picture of each camera. The ends of the topics exist while something is looked at, so that a station
+/// that shows no pictures causes no traffic.
 class Cameras {
  public:
   static constexpr std::size_t kMost = 16;      ///< Cameras that are looked at, as many as a message names.
@@ -80,8 +80,8 @@ class Cameras {
     Time ends{};  ///< It is sent once more that no one looks.
     perception::StripeStore store{};
     CameraPicture newest{};
-    Time exposed{};                                     ///< Of `newest`.
-    std::uint32_t shown{};                              ///< Frame of which `newest` was made.
+    Time exposed{}, arriving{};                         ///< Of `newest`, and of the picture that is arriving.
+    std::uint32_t shown{}, shown_run{};                 ///< Frame and run of which `newest` was made.
     std::deque<std::pair<Time, std::size_t>> lately{};  ///< Pieces of the last seconds, with their bytes.
     std::deque<Time> pictures{};                        ///< When the pictures of the last seconds came.
     std::vector<Waiting> waiting{};
@@ -100,7 +100,7 @@ class Cameras {
   Fleet& fleet_;
   const Presence& presence_;
   std::map<Key, View> views_{};
-  ShotDesk shots_{};
+  ShotDesk shots_;
   std::uint64_t pictures_{};
   bool changed_{};
   Time sent_{};

@@ -2,6 +2,7 @@
 #include "basestation/camera/shot_desk.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "core/store/crc32c.hpp"
 #include "core/transfer/shot_piece.hpp"
@@ -12,20 +13,29 @@ using transfer::kShotBlock;
 
 std::uint32_t ShotDesk::await(const std::string& robot, const std::string& camera, Time now, Done done) {
   if (all_.size() >= kMost) return 0;
-  all_[++last_] = {.robot = robot, .camera = camera, .last = now, .done = std::move(done)};
+  if (++last_ == 0) ++last_;
+  all_[last_] = {.robot = robot, .camera = camera, .order = ++orders_, .since = now, .done = std::move(done)};
   return last_;
 }
 
 std::uint32_t ShotDesk::awaited(const std::string& robot, const std::string& camera) const {
+  std::uint32_t oldest = 0;
   for (const auto& [number, awaited] : all_)
-    if (awaited.robot == robot && awaited.camera == camera) return number;
-  return 0;
+    if (awaited.robot == robot && awaited.camera == camera &&
+        (oldest == 0 || awaited.order < all_.at(oldest).order))
+      oldest = number;
+  return oldest;
+}
+
+void ShotDesk::asked(std::uint32_t number, Time now) {
+  const auto found = all_.find(number);
+  if (found != all_.end() && !found->second.last) found->second.last = now;
 }
 
 std::vector<std::pair<std::string, std::string>> ShotDesk::awaited_cameras() const {
-  std::vector<std::pair<std::string, std::string>> out;
-  for (const auto& [number, awaited] : all_) out.emplace_back(awaited.robot, awaited.camera);
-  return out;
+  std::set<std::pair<std::string, std::string>> out;
+  for (const auto& [number, awaited] : all_) out.emplace(awaited.robot, awaited.camera);
+  return {out.begin(), out.end()};
 }
 
 Result<void> ShotDesk::take(const std::string& robot, std::span<const std::uint8_t> bytes, Time now) {
@@ -67,8 +77,11 @@ void ShotDesk::finish(std::uint32_t number, const Result<ShotPicture>& result) {
 
 void ShotDesk::tick(Time now) {
   std::vector<std::uint32_t> late;
-  for (const auto& [number, awaited] : all_)
-    if (now - awaited.last > kSilence) late.push_back(number);
+  for (const auto& [number, awaited] : all_) {
+    const Duration patience = awaited.blocks.empty() ? kFirst : kSilence;
+    if (awaited.last ? now - *awaited.last > patience : now - awaited.since > kPatience)
+      late.push_back(number);
+  }
   for (const std::uint32_t number : late) {
     const Awaited& awaited = all_.at(number);
     const std::string text = awaited.blocks.empty()

@@ -5,6 +5,8 @@
 
 #include <jpeglib.h>
 
+#include <jerror.h>
+
 namespace adit::perception {
 
 /// Errors of libjpeg that jump back into our code instead of ending the process. The function that calls
@@ -20,7 +22,8 @@ struct JpegJump {
     base.error_exit = &JpegJump::leave;
     base.output_message = [](j_common_ptr) {};
     base.emit_message = [](j_common_ptr info, int level) {
-      if (level >= 0) return;
+      // Many cameras write bytes between two segments, which lose nothing.
+      if (level >= 0 || info->err->msg_code == JWRN_EXTRANEOUS_DATA) return;
       ++info->err->num_warnings;
       if (reinterpret_cast<JpegJump*>(info->err)->strict) leave(info);
     };

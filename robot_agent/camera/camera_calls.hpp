@@ -28,11 +28,13 @@ struct TakenShot {
 struct CameraOrder {
   std::optional<transfer::PeerId> station{};
   std::vector<contract::CameraView> views{};
+  std::uint64_t got{};  ///< CameraAnswer::batch of the last answer that arrived.
 };
-/// The pictures that were taken since the last answer.
+/// The pictures that were taken and did not arrive at the command component yet.
 struct CameraAnswer {
   std::vector<TakenShot> shots{};
-  bool active{};  ///< Some station looks, or a picture is still being taken.
+  std::uint64_t batch{};  ///< Of these pictures; they come again until an order names it.
+  bool active{};          ///< Some station looks, or a picture is still being taken.
 };
 /// Offered by the component `cameras`.
 using CameraService = Service<CameraOrder, CameraAnswer>;

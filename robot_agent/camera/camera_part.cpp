@@ -2,6 +2,7 @@
 #include "robot_agent/camera/camera_part.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "adit/camera.h"
@@ -13,8 +14,8 @@ namespace adit::agent {
 namespace {
 
 constexpr Duration kTick = 10ms;
-constexpr Duration kSeek = 1s;  // Between two looks at what the driver writes.
-constexpr std::size_t kMaxShots = 4;
+constexpr Duration kSeek = 1s;        // Between two looks at what the driver writes.
+constexpr std::size_t kMaxShots = 4;  // That did not arrive at the command component.
 constexpr std::size_t kMaxArrivals = 256;
 
 }  // namespace
@@ -74,7 +75,13 @@ CameraAnswer CameraPart::take(const CameraOrder& order) {
       for (const auto& camera : cameras_)
         if (camera->config.name == view.camera) camera->stream.look(*order.station, view, now());
   update();
-  CameraAnswer answer{.shots = std::exchange(shots_, {})};
+  if (order.got == batch_) shots_.clear();  // They arrived.
+  if (!fresh_.empty()) {
+    std::move(fresh_.begin(), fresh_.end(), std::back_inserter(shots_));
+    fresh_.clear();
+    ++batch_;
+  }
+  CameraAnswer answer{.shots = shots_, .batch = batch_};
   for (const auto& camera : cameras_)
     answer.active = answer.active || camera->stream.is_active(now()) || !camera->shooting.empty();
   return answer;
@@ -85,6 +92,7 @@ void CameraPart::update() {
   for (const auto& camera : cameras_) {
     const bool active = camera->stream.is_active(now());
     any = any || active;
+    if (!camera->stream.is_watched(now())) camera->stream.drop();
     if (!active) {
       camera->reader.reset();
       continue;
@@ -114,7 +122,7 @@ void CameraPart::open(Camera& camera) {
       bool good = true;
       protect([&] {
         camera.heard = info.received;
-        if (!needs_picture(camera)) return;
+        if (!needs_live(camera) && !needs_shot(camera)) return;
         Message message;
         good = wire::decode(bytes, message);
         if (good) take(camera, std::make_shared<DriverPicture>(picture_of(message, info.received)));
@@ -157,9 +165,9 @@ void CameraPart::send(Time at) {
   const std::size_t readers = std::max<std::size_t>(1, output_->pieces.matched());
   pacer_.observe(at, ends_.radio.wire.sender(), readers);
   for (const auto& camera : cameras_) {
-    for (const CameraStream::Arrivals& report : camera->stream.take_arrivals())
-      for (std::uint32_t i = 0; i < std::min<std::size_t>(report.sent, kMaxArrivals); ++i)
-        pacer_.settled(i < report.arrived);
+    const CameraStream::Arrivals report = camera->stream.take_arrivals();
+    for (std::uint32_t i = 0; i < std::min<std::size_t>(report.sent, kMaxArrivals); ++i)
+      pacer_.settled(i < report.arrived);
     camera->stream.adapt(pacer_.rate() / static_cast<double>(watched) / static_cast<double>(readers), at);
   }
   std::size_t idle = 0;
@@ -178,17 +186,30 @@ void CameraPart::send(Time at) {
   }
 }
 
-bool CameraPart::needs_picture(const Camera& camera) const {
-  return camera.stream.is_ready(now()) || (camera.shooting.empty() && camera.stream.shot_wanted(now()));
+bool CameraPart::needs_live(const Camera& camera) const {
+  // The first picture waits until a station's reader is there.
+  return output_->pieces.matched() > 0 && camera.stream.is_ready(now());
+}
+
+bool CameraPart::needs_shot(const Camera& camera) const {
+  return camera.shooting.empty() && fresh_.size() + shots_.size() < kMaxShots &&
+         camera.stream.shot_wanted(now());
 }
 
 void CameraPart::take(Camera& camera, std::shared_ptr<const DriverPicture> picture) {
-  if (camera.shooting.empty() && camera.stream.shot_wanted(now())) shoot(camera, picture);
-  if (camera.stream.is_ready(now())) code(camera, picture);
+  const bool shot = needs_shot(camera), live = needs_live(camera);
+  if (shot) camera.shooting = camera.stream.wanted_shots(now());
+  if (live) camera.stream.begin(now());
+  // The pose first: the odometry of that time is soon forgotten.
+  locate(camera, *picture,
+         [this, &camera, picture, shot, live](const std::optional<Pose3>& T_map_base, Time exposed) {
+           const Taken taken{picture, T_map_base, exposed};
+           if (shot) shoot(camera, taken);
+           if (live) code(camera, taken);
+         });
 }
 
-void CameraPart::code(Camera& camera, const std::shared_ptr<const DriverPicture>& picture) {
-  camera.stream.begin(now());
+void CameraPart::code(Camera& camera, const Taken& taken) {
   camera.stream.prepare_encoder();
   const std::size_t stripe =
       pacer_.piece_bytes() - perception::kPictureHeaderBytes - perception::kStripeBytes;
@@ -197,7 +218,7 @@ void CameraPart::code(Camera& camera, const std::shared_ptr<const DriverPicture>
        .modelled = params_.modelled,
        .priority = JobPriority::low,
        .lane = camera.config.name},
-      [picture, encoder = camera.stream.encoder(), rung = camera.stream.rung(), stripe,
+      [picture = taken.picture, encoder = camera.stream.encoder(), rung = camera.stream.rung(), stripe,
        at = now()]() -> Result<Coded> {
         const auto pixels = pixels_of(*picture, rung.width, rung.height);
         if (!pixels) return pixels.error();
@@ -209,45 +230,47 @@ void CameraPart::code(Camera& camera, const std::shared_ptr<const DriverPicture>
         if (out.picture.format.span == 0) return Error{Reason::internal, "a picture could not be coded"};
         return out;
       },
-      [this, &camera, picture](Result<Coded> result) { coded(camera, picture, std::move(result)); });
+      [this, &camera, taken](Result<Coded> result) {
+        if (!result) {
+          camera.stream.failed();
+          return refuse(camera, result.error());
+        }
+        std::optional<Pose3> T_map_camera;
+        if (taken.T_map_base) T_map_camera = *taken.T_map_base * camera.config.mounting.pose();
+        camera.stream.coded(std::move(result->picture), taken.picture->stamp, T_map_camera, taken.exposed,
+                            pacer_.piece_bytes(), now());
+        send(now());
+      });
 }
 
-void CameraPart::coded(Camera& camera, const std::shared_ptr<const DriverPicture>& picture,
-                       Result<Coded> result) {
-  if (!result) {
-    camera.stream.failed();
-    return report(camera, result.error(), "sensor_refused");
-  }
-  locate(camera, *picture,
-         [this, &camera, stamp = picture->stamp, coded = std::make_shared<Coded>(std::move(*result))](
-             const std::optional<Pose3>& T_map_base, Time exposed) {
-           std::optional<Pose3> T_map_camera;
-           if (T_map_base) T_map_camera = *T_map_base * camera.config.mounting.pose();
-           camera.stream.coded(std::move(coded->picture), stamp, T_map_camera, exposed, pacer_.piece_bytes());
-           send(now());
-         });
-}
-
-void CameraPart::shoot(Camera& camera, const std::shared_ptr<const DriverPicture>& picture) {
-  camera.shooting = camera.stream.take_shots(now());
+void CameraPart::shoot(Camera& camera, const Taken& taken) {
   compute(
       {.name = "camera shot",
        .modelled = 2 * params_.modelled,
        .priority = JobPriority::low,
        .lane = camera.config.name + " shot"},
-      [picture]() -> Result<std::vector<std::uint8_t>> { return jpeg_of(*picture); },
-      [this, &camera, picture](Result<std::vector<std::uint8_t>> jpeg) {
+      [picture = taken.picture]() -> Result<std::vector<std::uint8_t>> { return jpeg_of(*picture); },
+      [this, &camera, taken](Result<std::vector<std::uint8_t>> jpeg) {
         const auto wanted = std::exchange(camera.shooting, {});
-        if (!jpeg) return report(camera, jpeg.error(), "sensor_refused");
-        locate(camera, *picture,
-               [this, name = camera.config.name, stamp = picture->stamp, wanted, jpeg = std::move(*jpeg)](
-                   const std::optional<Pose3>& T_map_base, Time exposed) {
-                 const auto age = static_cast<std::uint32_t>((now() - exposed) / 1ms);
-                 for (const auto& [station, number] : wanted)
-                   if (shots_.size() < kMaxShots)
-                     shots_.push_back({station, number, name, stamp, age, T_map_base, jpeg});
-               });
+        // It stays wanted: the next picture is tried.
+        if (!jpeg) return refuse(camera, jpeg.error());
+        const auto age = static_cast<std::uint32_t>((now() - taken.exposed) / 1ms);
+        for (const auto& [station, number] : wanted) {
+          if (fresh_.size() + shots_.size() >= kMaxShots) break;
+          camera.stream.took_shot(station, number);
+          fresh_.push_back(
+              {station, number, camera.config.name, taken.picture->stamp, age, taken.T_map_base, *jpeg});
+        }
       });
+}
+
+void CameraPart::refuse(const Camera& camera, const Error& error) {
+  const bool own = error.reason == Reason::queue_full || error.reason == Reason::no_answer ||
+                   error.reason == Reason::cancelled;
+  if (own)  // Of this computer, not of the driver.
+    log().warn("camera " + camera.config.name + ": " + error.text);
+  else
+    report(camera, error, "sensor_refused");
 }
 
 void CameraPart::locate(const Camera& camera, const DriverPicture& picture,

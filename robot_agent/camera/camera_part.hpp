@@ -49,6 +49,12 @@ class CameraPart : public Component {
  private:
   struct Camera;
   struct Coded;
+  /// A picture of the driver, with the pose of the body at its exposure.
+  struct Taken {
+    std::shared_ptr<const DriverPicture> picture{};
+    std::optional<Pose3> T_map_base{};
+    Time exposed{};
+  };
 
   CameraAnswer take(const CameraOrder& order);
   /// Opens and closes the drivers' topics as they are needed, and begins or ends the ticks.
@@ -56,12 +62,13 @@ class CameraPart : public Component {
   void open(Camera& camera);
   void tick();
   void send(Time at);
-  /// Takes a picture of the driver, if one is needed now.
-  bool needs_picture(const Camera& camera) const;
+  bool needs_live(const Camera& camera) const;
+  bool needs_shot(const Camera& camera) const;
   void take(Camera& camera, std::shared_ptr<const DriverPicture> picture);
-  void code(Camera& camera, const std::shared_ptr<const DriverPicture>& picture);
-  void coded(Camera& camera, const std::shared_ptr<const DriverPicture>& picture, Result<Coded> result);
-  void shoot(Camera& camera, const std::shared_ptr<const DriverPicture>& picture);
+  void code(Camera& camera, const Taken& taken);
+  void shoot(Camera& camera, const Taken& taken);
+  /// Reports a picture that could not be used.
+  void refuse(const Camera& camera, const Error& error);
   /// Asks where the robot was when the picture was taken; `done` gets the pose of the body and the exposure's
   /// time by this strand's clock.
   void locate(const Camera& camera, const DriverPicture& picture,
@@ -77,8 +84,9 @@ class CameraPart : public Component {
   struct Output;
   std::unique_ptr<Output> output_;
   std::vector<std::unique_ptr<Camera>> cameras_{};
-  std::vector<TakenShot> shots_{};
-  std::size_t turn_{};  ///< Of the cameras, which send in turns.
+  std::vector<TakenShot> fresh_{}, shots_{};  ///< `shots_`: in the last answer.
+  std::uint64_t batch_{};                     ///< Of that answer.
+  std::size_t turn_{};                        ///< Of the cameras, which send in turns.
   Timer tick_{};
 };
 

@@ -5,6 +5,11 @@
 #include <utility>
 
 namespace adit::agent {
+namespace {
+
+constexpr double kLeastRate = 0.1;  // Pictures/s that a station can ask for.
+
+}  // namespace
 
 void CameraStream::look(const transfer::PeerId& station, const contract::CameraView& view, Time now) {
   if (!lookers_.contains(station) && lookers_.size() >= kMaxLookers) {
@@ -14,10 +19,18 @@ void CameraStream::look(const transfer::PeerId& station, const contract::CameraV
   Looker& looker = lookers_[station];
   if (view.shot != looker.view.shot) looker.shot_since = now;
   const bool begins = looker.until < now || looker.view.width == 0;
-  if (view.width > 0 && begins) all_stripes_ = true;
+  if (view.width > 0 && begins) {
+    all_stripes_ = true;
+    looker.reported = false;
+    if (!is_watched(now)) base_ = {}, outgoing_.clear();  // What is left is of another time.
+  }
   if (view.run == run_ && view.frame <= frame_) {
-    if (view.arrived >= looker.arrived && pieces_ >= looker.sent)
-      arrivals_.push_back({pieces_ - looker.sent, view.arrived - looker.arrived});
+    // What was sent before a station began to look, or as it did, says nothing of its link.
+    if (looker.reported && view.arrived >= looker.arrived && pieces_ >= looker.sent) {
+      arrivals_.sent += pieces_ - looker.sent;
+      arrivals_.arrived += view.arrived - looker.arrived;
+    }
+    looker.reported = true;
     looker.arrived = view.arrived;
     looker.sent = pieces_;
     if (view.frame >= format_since_ && !begins) {
@@ -48,20 +61,27 @@ void CameraStream::adapt(double bytes_per_second, Time now) {
     if (looker.until > now) {
       input.most_width = std::max(input.most_width, looker.view.width);
       if (looker.view.width > 0)
-        input.most_rate = std::max(input.most_rate, static_cast<double>(looker.view.rate));
+        input.most_rate =
+            std::max(input.most_rate, std::max(kLeastRate, static_cast<double>(looker.view.rate)));
     }
   choice_ = ladder_.choose(input, now);
 }
 
 bool CameraStream::is_ready(Time now) const {
-  return !coding_ && outgoing_.empty() && now >= next_ && choice_.rung.width > 0 &&
+  return !coding_ && outgoing_.empty() && now >= base_ + choice_.period && choice_.rung.width > 0 &&
          choice_.period < perception::Ladder::kNoPicture && is_watched(now);
 }
 
 void CameraStream::begin(Time now) {
   coding_ = true;
   // From the time at which it was due, so that a rate is kept, but never earlier than half a period from now.
-  next_ = std::max(next_ + choice_.period, now + choice_.period / 2);
+  base_ = std::max(base_ + choice_.period, now - choice_.period / 2);
+}
+
+void CameraStream::failed() {
+  coding_ = false;
+  // A job that hangs may still use the one before.
+  encoder_ = std::make_shared<perception::StripeEncoder>();
 }
 
 void CameraStream::prepare_encoder() {
@@ -71,8 +91,9 @@ void CameraStream::prepare_encoder() {
 }
 
 void CameraStream::coded(perception::StripeEncoder::Coded picture, std::uint64_t stamp,
-                         const std::optional<Pose3>& T_map_camera, Time exposed, std::size_t most) {
+                         const std::optional<Pose3>& T_map_camera, Time exposed, std::size_t most, Time now) {
   coding_ = false;
+  if (!is_watched(now)) return;
   ++frame_;
   if (picture.format != format_) {
     format_ = picture.format;
@@ -106,17 +127,19 @@ std::vector<std::uint8_t> CameraStream::next_piece(Time now) {
   return encode(piece);
 }
 
-std::vector<std::pair<transfer::PeerId, std::uint32_t>> CameraStream::take_shots(Time now) {
+std::vector<std::pair<transfer::PeerId, std::uint32_t>> CameraStream::wanted_shots(Time now) const {
   std::vector<std::pair<transfer::PeerId, std::uint32_t>> out;
-  for (auto& [station, looker] : lookers_)
-    if (looker.view.shot != 0 && looker.view.shot != looker.shot_done &&
-        now - looker.shot_since < kShotWait) {
-      looker.shot_done = looker.view.shot;
+  for (const auto& [station, looker] : lookers_)
+    if (looker.view.shot != 0 && looker.view.shot != looker.shot_done && now - looker.shot_since < kShotWait)
       out.emplace_back(station, looker.view.shot);
-    }
   return out;
 }
 
-std::vector<CameraStream::Arrivals> CameraStream::take_arrivals() { return std::exchange(arrivals_, {}); }
+void CameraStream::took_shot(const transfer::PeerId& station, std::uint32_t number) {
+  const auto looker = lookers_.find(station);
+  if (looker != lookers_.end()) looker->second.shot_done = number;
+}
+
+CameraStream::Arrivals CameraStream::take_arrivals() { return std::exchange(arrivals_, {}); }
 
 }  // namespace adit::agent

@@ -41,27 +41,31 @@ class CameraStream {
   bool is_ready(Time now) const;
   /// Notes that a picture is being coded, or that it could not be.
   void begin(Time now);
-  void failed() { coding_ = false; }
+  void failed();
+  /// Drops the pieces of a picture that is on its way.
+  void drop() { outgoing_.clear(); }
 
   /// What the encoder knows of the receivers; it is used by one job at a time, between begin() and the next.
   std::shared_ptr<perception::StripeEncoder> encoder() { return encoder_; }
   /// Applies what receivers reported missing; call it before a job.
   void prepare_encoder();
-  /// Takes a coded picture; its pieces go out next. `most`: bytes of a piece.
+  /// Takes a coded picture; its pieces go out next, if it is still watched. `most`: bytes of a piece.
   void coded(perception::StripeEncoder::Coded picture, std::uint64_t stamp,
-             const std::optional<Pose3>& T_map_camera, Time exposed, std::size_t most);
+             const std::optional<Pose3>& T_map_camera, Time exposed, std::size_t most, Time now);
   bool has_pieces() const { return !outgoing_.empty(); }
   /// The next piece, with its age at this time.
   std::vector<std::uint8_t> next_piece(Time now);
 
-  /// Stations whose shots the next picture is for; they count as served.
-  std::vector<std::pair<transfer::PeerId, std::uint32_t>> take_shots(Time now);
+  /// Stations whose shots the next picture is for, and their numbers.
+  std::vector<std::pair<transfer::PeerId, std::uint32_t>> wanted_shots(Time now) const;
+  /// Notes that such a shot was taken.
+  void took_shot(const transfer::PeerId& station, std::uint32_t number);
 
-  /// Pieces that were sent since the report before, and how many of them arrived, as a station says.
+  /// Pieces that were sent, and how many of them arrived, by the reports of stations since the last call.
   struct Arrivals {
     std::uint32_t sent{}, arrived{};
   };
-  std::vector<Arrivals> take_arrivals();
+  Arrivals take_arrivals();
 
  private:
   struct Looker {
@@ -70,6 +74,7 @@ class CameraStream {
     std::uint32_t shot_done{};
     Time shot_since{};
     std::uint32_t arrived{}, sent{};  ///< At its last report of this run.
+    bool reported{};                  ///< There was one since it began to look.
   };
   std::uint32_t run_;
   std::map<transfer::PeerId, Looker> lookers_{};
@@ -82,10 +87,10 @@ class CameraStream {
   perception::PictureFormat format_{};
   std::deque<perception::PicturePiece> outgoing_{};
   Time exposed_{};  ///< Of the picture that is on its way.
-  Time next_{};
+  Time base_{};     ///< The next picture is due a period later.
   bool coding_{};
   std::uint32_t frame_{}, pieces_{};
-  std::vector<Arrivals> arrivals_{};
+  Arrivals arrivals_{};
 };
 
 }  // namespace adit::agent

@@ -20,7 +20,12 @@ void ShotSource::add(TakenShot shot, Time now) {
   std::erase_if(shots_, [&](const Shot& each) {  // A repeated request.
     return each.taken.station == shot.station && each.taken.number == shot.number;
   });
-  if (shots_.size() >= kMost) shots_.pop_front();
+  if (shots_.size() >= kMost) {  // A station never costs another one its picture.
+    const auto own =
+        std::ranges::find_if(shots_, [&](const Shot& each) { return each.taken.station == shot.station; });
+    if (own == shots_.end()) return;
+    shots_.erase(own);
+  }
   Shot& added = shots_.emplace_back();
   added.id = ++ids_;
   added.crc = crc32c(shot.jpeg);
@@ -29,6 +34,12 @@ void ShotSource::add(TakenShot shot, Time now) {
   added.has.assign(added.left, false);
   added.flying.assign(added.left, false);
   added.taken = std::move(shot);
+}
+
+void ShotSource::wanted(const transfer::PeerId& station, const std::string& camera, std::uint32_t number) {
+  std::erase_if(shots_, [&](const Shot& each) {
+    return each.taken.station == station && each.taken.camera == camera && each.taken.number != number;
+  });
 }
 
 void ShotSource::tick(Time now) {
@@ -67,7 +78,7 @@ std::size_t ShotSource::missing(const transfer::PeerId& peer) const {
 }
 
 std::optional<transfer::Source::Content> ShotSource::next(std::span<const transfer::PeerId> peers,
-                                                          std::size_t max_bytes, Time) {
+                                                          std::size_t max_bytes, Time now) {
   const auto wanted = std::ranges::find_if(shots_, [&](const Shot& shot) {
     return shot.left > 0 && !peers.empty() && shot.taken.station == peers.front();
   });
@@ -79,7 +90,7 @@ std::optional<transfer::Source::Content> ShotSource::next(std::span<const transf
   transfer::ShotPiece piece{.camera = shot.taken.camera,
                             .number = shot.taken.number,
                             .stamp = shot.taken.stamp,
-                            .age = shot.taken.age,
+                            .age = shot.taken.age + static_cast<std::uint32_t>((now - shot.added) / 1ms),
                             .bytes = static_cast<std::uint32_t>(shot.taken.jpeg.size()),
                             .crc = shot.crc,
                             .first = static_cast<std::uint16_t>(first)};

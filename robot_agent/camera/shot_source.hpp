@@ -14,11 +14,13 @@ namespace adit::agent {
 /// station that still wants one after a restart of this robot asks again. Runs on the command strand.
 class ShotSource final : public transfer::Source {
  public:
-  static constexpr std::size_t kMost = 4;     ///< Pictures; the oldest one goes.
+  static constexpr std::size_t kMost = 8;     ///< Pictures; then the oldest one of the same station goes.
   static constexpr Duration kPatience{300s};  ///< A picture that is not at its station by then is dropped.
 
-  /// Adds a picture. `place`: of the camera in the map, if it is known.
+  /// Adds a picture.
   void add(TakenShot shot, Time now);
+  /// A station wants that picture of the camera, and no other one; 0: none.
+  void wanted(const transfer::PeerId& station, const std::string& camera, std::uint32_t number);
   /// Drops what took too long.
   void tick(Time now);
   std::size_t size() const { return shots_.size(); }

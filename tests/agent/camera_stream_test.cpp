@@ -24,7 +24,7 @@ class CameraStreamTest : public testing::Test {
     stream.coded(
         stream.encoder()->encode(
             picture, {.width = rung.width, .height = rung.height, .quality = rung.quality}, 300, now),
-        5, std::nullopt, now - 40ms, 356);
+        5, std::nullopt, now - 40ms, 356, now);
   }
   std::size_t drain() {
     std::size_t pieces = 0;
@@ -118,25 +118,55 @@ TEST_F(CameraStreamTest, ReportsWhatArrived) {
   half.frame = 1;
   half.arrived = pieces / 2;
   stream.look(kOne, half, now);
+  EXPECT_EQ(stream.take_arrivals().sent, 0U) << "of the first report it is not known what could arrive";
+  code(100);
+  const auto more = static_cast<std::uint32_t>(drain());
+  half.frame = 2;
+  half.arrived += more / 2;
+  stream.look(kOne, half, now);
   const auto arrivals = stream.take_arrivals();
-  ASSERT_EQ(arrivals.size(), 1U);
-  EXPECT_EQ(arrivals[0].sent, pieces);
-  EXPECT_EQ(arrivals[0].arrived, pieces / 2);
+  EXPECT_EQ(arrivals.sent, more);
+  EXPECT_EQ(arrivals.arrived, more / 2);
   half.run = 5;
   stream.look(kOne, half, now);
-  EXPECT_TRUE(stream.take_arrivals().empty()) << "of another run";
+  EXPECT_EQ(stream.take_arrivals().sent, 0U) << "of another run";
 }
 
 TEST_F(CameraStreamTest, AShotIsTakenOnceForEachRequest) {
   stream.look(kOne, view(0, 0, 4), now);
   EXPECT_TRUE(stream.shot_wanted(now));
   EXPECT_FALSE(stream.is_watched(now));
-  EXPECT_EQ(stream.take_shots(now).size(), 1U);
+  EXPECT_EQ(stream.wanted_shots(now).size(), 1U);
+  EXPECT_TRUE(stream.shot_wanted(now)) << "until it was taken: a broken picture is none";
+  stream.took_shot(kOne, 4);
   stream.look(kOne, view(0, 0, 4), now);
   EXPECT_FALSE(stream.shot_wanted(now)) << "the request is repeated until the picture is there";
   stream.look(kOne, view(0, 0, 5), now);
   EXPECT_TRUE(stream.shot_wanted(now));
   EXPECT_FALSE(stream.shot_wanted(now + CameraStream::kShotWait));
+}
+
+TEST_F(CameraStreamTest, ARateThatWasLowDoesNotDelayTheNextOne) {
+  stream.look(kOne, view(160, 0.1F), now);
+  stream.adapt(50e3, now);
+  code();
+  drain();
+  now += 1s;
+  stream.adapt(50e3, now);
+  EXPECT_FALSE(stream.is_ready(now));
+  stream.look(kTwo, view(160, 15.0F), now);
+  stream.adapt(50e3, now);
+  EXPECT_TRUE(stream.is_ready(now));
+}
+
+TEST_F(CameraStreamTest, PiecesOfAnotherTimeAreNotSent) {
+  stream.look(kOne, view(160), now);
+  stream.adapt(50e3, now);
+  code();
+  EXPECT_TRUE(stream.has_pieces());
+  now += 60s;
+  stream.look(kOne, view(160), now);
+  EXPECT_FALSE(stream.has_pieces());
 }
 
 TEST_F(CameraStreamTest, IsBoundedInLookers) {

@@ -78,6 +78,29 @@ TEST_F(ShotSourceTest, IsBoundedInNumberAndTime) {
   EXPECT_EQ(source.size(), 0U);
 }
 
+TEST_F(ShotSourceTest, OneThatIsNotWantedAnyMoreGoes) {
+  source.add(shot(), now);
+  source.wanted(kOther, "front", 0);
+  source.wanted(kAsks, "back", 0);
+  source.wanted(kAsks, "front", 1);
+  EXPECT_EQ(source.size(), 1U);
+  source.wanted(kAsks, "front", 2);
+  EXPECT_EQ(source.size(), 0U);
+}
+
+TEST_F(ShotSourceTest, AStationNeverCostsAnotherOneItsPicture) {
+  for (std::uint32_t i = 1; i <= ShotSource::kMost; ++i) {
+    TakenShot each = shot();
+    each.number = i;
+    source.add(std::move(each), now);
+  }
+  TakenShot other = shot();
+  other.station = kOther;
+  source.add(std::move(other), now);
+  EXPECT_EQ(source.missing(kOther), 0U);
+  EXPECT_EQ(source.size(), ShotSource::kMost);
+}
+
 TEST_F(ShotSourceTest, ARepeatedRequestReplacesItsPicture) {
   source.add(shot(), now);
   source.add(shot(300), now);

@@ -199,7 +199,8 @@ INSTANTIATE_TEST_SUITE_P(Config, Scenarios,
                                          "dead_end", "shut_door", "agent_crash", "cut_link",
                                          "two_robots_passing", "station_restart", "foreign_writer",
                                          "thin_link", "floor_plan", "stuck_stick", "low_battery", "external",
-                                         "ten_robots", "findings_after_gap", "marks", "photos", "camera", "demo"),
+                                         "ten_robots", "findings_after_gap", "marks", "photos", "camera",
+                                         "demo"),
                          [](const auto& which) { return std::string(which.param); });
 
 TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {

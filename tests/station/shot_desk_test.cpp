@@ -69,14 +69,18 @@ TEST_F(ShotDeskTest, AnotherPictureOfTheSameNumberBeginsAgain) {
 
 TEST_F(ShotDeskTest, OneThatIsLateIsGivenUpWithAReason) {
   const std::uint32_t number = await();
-  desk.tick(now + ShotDesk::kSilence);
-  EXPECT_TRUE(results.empty());
-  EXPECT_TRUE(desk.take("r1", piece(number, 0), now + 15s).ok());
-  desk.tick(now + 30s);
-  EXPECT_TRUE(results.empty()) << "a piece came since";
-  desk.tick(now + 40s);
+  desk.tick(now + 60s);
+  EXPECT_TRUE(results.empty()) << "robots were not asked for it";
+  desk.asked(number, now + 60s);
+  EXPECT_TRUE(desk.take("r1", piece(number, 0), now + 75s).ok());
+  desk.tick(now + 190s);
+  EXPECT_TRUE(results.empty()) << "over a cut";
+  desk.tick(now + 200s);
   ASSERT_EQ(results.size(), 1U);
   EXPECT_EQ(results[0].reason(), Reason::no_answer);
+  desk.asked(await(), now);
+  desk.tick(now + 21s);
+  EXPECT_EQ(results.size(), 2U) << "nothing came of it";
 }
 
 TEST_F(ShotDeskTest, IsBounded) {

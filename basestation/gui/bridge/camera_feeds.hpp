@@ -35,8 +35,8 @@ class CameraFeeds : public QObject {
   CameraFeeds(CommandSink& sink, QObject* parent);
   ~CameraFeeds() override { pool_.waitForDone(); }
 
-  /// Asks for the next picture. `former`: the unmarked one of the picture before. `done` is called once, in the window's
-  /// thread, unless this is destroyed first.
+  /// Asks for the next picture. `former`: the unmarked one of the picture before. `done` is called once, in
+  /// the window's thread, unless this is destroyed first.
   void next(const station::CameraRequest& request, const QImage& former, Done done);
 
  private:

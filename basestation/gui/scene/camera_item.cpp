@@ -3,6 +3,7 @@
 
 #include <QPainter>
 #include <QPointer>
+#include <QQuickWindow>
 #include <algorithm>
 
 namespace adit::gui {
@@ -89,7 +90,9 @@ void CameraItem::take(std::uint64_t run, const ShownPicture& picture) {
     update();
   }
   emit shown_changed();
-  picture.problem.isEmpty() ? ask() : retry_.start();
+  if (!picture.problem.isEmpty()) return retry_.start(kRetry);
+  if (picture.number == 0) return retry_.start(kPause);  // The station may be too busy to wait.
+  ask();
 }
 
 double CameraItem::age() const {

@@ -27,7 +27,8 @@ class CameraItem : public QQuickPaintedItem {
  public:
   static constexpr double kStale = 1.0;  ///< s
   static constexpr int kAgeStep = 500;   ///< Between two looks at the age, ms.
-  static constexpr int kRetry = 1000;    ///< After an answer without a picture, ms.
+  static constexpr int kRetry = 1000;    ///< After a problem, ms.
+  static constexpr int kPause = 100;     ///< After an answer without a picture, ms.
 
   explicit CameraItem(QQuickItem* parent = nullptr);
   void paint(QPainter* painter) override;
