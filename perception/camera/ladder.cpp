@@ -28,7 +28,7 @@ constexpr std::array kLadder{
     RungPrior{{320, 240, true, 50, 3.0, 10.0}, 11'000},
     RungPrior{{640, 480, true, 35, 6.0, 15.0}, 26'000},
     RungPrior{{640, 480, true, 50, 10.0, 15.0}, 33'000},
-    RungPrior{{640, 480, true, 70, 14.0, 15.0}, 46'000},
+    RungPrior{{640, 480, true, 70, 9.6, 15.0}, 46'000},
     RungPrior{{1280, 720, true, 75, 10.0, 15.0}, 140'000},
 };
 

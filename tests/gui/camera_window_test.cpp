@@ -171,7 +171,12 @@ TEST_F(CameraWindow, WhoDrivesSeesThePictureBesideTheMapAndCanStopTheRobot) {
   world.robots[0].goal_state = contract::GoalState::none;
   drive.show(world);
   show(world);
-  control.drive()->use(drive, {});
+  control.drive()->use(drive,
+                       [] { return InputThread::Pad([] { return station::input::Gamepad::State{}; }); });
+  struct Release {  // The thread ends before what it uses.
+    Control& control;
+    ~Release() { control.drive()->stop_using(); }
+  } release{control};
   EXPECT_FALSE(find_item(window(), "driveCamera")->isVisible());
   control.drive()->begin("r1");
   ASSERT_TRUE(QTest::qWaitFor([&] { return control.drive()->driving(); }, 10'000));
@@ -185,7 +190,6 @@ TEST_F(CameraWindow, WhoDrivesSeesThePictureBesideTheMapAndCanStopTheRobot) {
       << text("driveCameraCaption").toStdString();
   touch(middle("driveStop"));
   EXPECT_TRUE(std::ranges::find(sink.lines, "STOP r1") != sink.lines.end());
-  control.drive()->stop_using();
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ class CameraItem : public QQuickPaintedItem {
   /// Age of the picture, s.
   double age() const;
   /// Pictures that come rarely are not old before the next one is due.
-  double stale_after() const { return std::max(kStale, 1.5 * period_ + delay_); }
+  double stale_after() const { return std::max(kStale, 2.0 * period_ + 0.5); }
   void restart();
   void ask();
   void take(std::uint64_t run, const ShownPicture& picture);
