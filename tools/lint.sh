@@ -38,7 +38,7 @@ check_includes() {
       # Front ends receive values; the station behind the socket is not theirs.
       if (from == "basestation" && to == "basestation" && path[2] in front_end)
         return whole ~ "^basestation/(" front_end[path[2]] ")/"
-      if (from == "basestation" && path[2] == "gui") return to == "core"
+      if (from == "basestation" && path[2] == "gui") return to == "core" || whole ~ /^perception\/camera\//
       if (from == "basestation" && to == "perception") return whole ~ /^perception\/(camera|map|stream|types)\//
       n = split(may[from], list, " ")
       for (i = 1; i <= n; i++) if (list[i] == to) return 1

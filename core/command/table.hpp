@@ -131,9 +131,7 @@ inline constexpr std::array kTable{
                 .runs = Runs::station,
                 .summary = "mark something that you know of on the map",
                 .details = "without Z on the floor that robots saw there, else at 0; a first word of TEXT "
-                           "that is a number is "
-                           "Z; a text of up to 128 bytes; "
-                           "stored at this station",
+                           "that is a number is Z; a text of up to 128 bytes; stored at this station",
                 .example = "finding add person 12 4.5 calls for help"},
     CommandInfo{.name = "finding remove",
                 .arguments = {Argument{.name = "remove", .type = Type::keyword}, kFinding},

@@ -19,16 +19,11 @@ struct RungPrior {
 };
 
 constexpr std::array kLadder{
-    RungPrior{{80, 60, false, 20, 0.1, 2.0}, 1'000},
-    RungPrior{{160, 120, false, 15, 0.9, 2.0}, 1'900},
-    RungPrior{{160, 120, false, 25, 1.1, 2.0}, 2'400},
-    RungPrior{{160, 120, true, 30, 1.3, 4.0}, 3'200},
-    RungPrior{{320, 240, true, 25, 1.3, 4.0}, 7'000},
-    RungPrior{{320, 240, true, 35, 1.4, 4.0}, 8'500},
-    RungPrior{{320, 240, true, 50, 3.0, 10.0}, 11'000},
-    RungPrior{{640, 480, true, 35, 6.0, 15.0}, 26'000},
-    RungPrior{{640, 480, true, 50, 10.0, 15.0}, 33'000},
-    RungPrior{{640, 480, true, 70, 9.6, 15.0}, 46'000},
+    RungPrior{{80, 60, false, 20, 0.1, 2.0}, 1'000},       RungPrior{{160, 120, false, 15, 0.9, 2.0}, 1'900},
+    RungPrior{{160, 120, false, 25, 1.1, 2.0}, 2'400},     RungPrior{{160, 120, true, 30, 1.3, 4.0}, 3'200},
+    RungPrior{{320, 240, true, 25, 1.3, 4.0}, 7'000},      RungPrior{{320, 240, true, 35, 1.4, 4.0}, 8'500},
+    RungPrior{{320, 240, true, 50, 3.0, 10.0}, 11'000},    RungPrior{{640, 480, true, 35, 6.0, 15.0}, 26'000},
+    RungPrior{{640, 480, true, 50, 10.0, 15.0}, 33'000},   RungPrior{{640, 480, true, 70, 9.6, 15.0}, 46'000},
     RungPrior{{1280, 720, true, 75, 10.0, 15.0}, 140'000},
 };
 

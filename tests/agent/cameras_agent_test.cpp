@@ -185,7 +185,7 @@ TEST_F(Cameras, AStillSceneCostsLittle) {
 TEST_F(Cameras, ASinglePictureComesWholeWithItsPlace) {
   begin(kMesh);
   moves = false;
-  const std::string file = testing::TempDir() + "cameras_agent_shot.jpg";
+  const std::string file = scratch_folder() + "/shot.jpg";
   spoil = [](CompressedImage& message) { message.data(perception::encode_jpeg(drawn(320, 240, 1), 60)); };
   const auto outcome = execute("camera r1 shot " + file);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.error;

@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Bad{"map foo", Reason::bad_argument,
                         "map: save or load or picture or status or forget is missing; try help map"},
                     Bad{"stairs r1", Reason::bad_argument, "stairs: takes no arguments"},
-                    Bad{"camera r1 on", Reason::unknown_command, "unknown command"},
+                    Bad{"relay r1 on", Reason::unknown_command, "unknown command"},
                     Bad{"take", Reason::bad_argument, "usage: take R..."},
                     Bad{"take r!", Reason::bad_argument, "cannot be a robot's name"},
                     Bad{"stop", Reason::bad_argument, "usage: stop R...|all"},

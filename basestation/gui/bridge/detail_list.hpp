@@ -21,6 +21,7 @@ class DetailList : public QObject {
   /// The robot of which pictures can be shown: the selected one, if it has a camera; else empty.
   Q_PROPERTY(QString cameraRobot READ camera_robot NOTIFY cameras_changed)
   Q_PROPERTY(QStringList cameras READ cameras NOTIFY cameras_changed)
+  Q_PROPERTY(QString cameraNames READ camera_names NOTIFY cameras_changed)
   /// The camera whose pictures are shown while cameraOn; empty: the robot has none.
   Q_PROPERTY(QString camera READ camera NOTIFY cameras_changed)
   Q_PROPERTY(bool cameraOn READ camera_on WRITE set_camera_on NOTIFY cameras_changed)
@@ -42,6 +43,7 @@ class DetailList : public QObject {
 
   const QString& camera_robot() const { return camera_robot_; }
   const QStringList& cameras() const { return cameras_; }
+  QString camera_names() const { return cameras_.join(", "); }
   const QString& camera() const { return camera_; }
   bool camera_on() const { return camera_on_; }
   void set_camera_on(bool on);

@@ -70,7 +70,7 @@ Rectangle {
             anchors.bottom: parent.bottom
             height: 10 * Theme.mm
             color: Theme.dim
-            text: pane.details.cameraOn ? pane.details.cameraText : pane.details.cameras.join(", ")
+            text: pane.details.cameraOn ? pane.details.cameraText : pane.details.cameraNames
         }
         HoldButton {
             id: cameraNext

@@ -55,7 +55,11 @@ void CameraItem::restart() {
   retry_.stop();
   const bool active = feeds_ != nullptr && !robot_.isEmpty() && isVisible();
   active ? aging_.start() : aging_.stop();
-  if (active) ask();
+  // Several properties change together.
+  if (active)
+    QTimer::singleShot(0, this, [this, run = run_] {
+      if (run == run_) ask();
+    });
   update();
   emit source_changed();
   emit shown_changed();
