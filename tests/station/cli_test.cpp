@@ -94,7 +94,7 @@ TEST_F(Cli, WrongUsageIsOneLineAndExitTwo) {
   const std::vector<std::vector<std::string>> wrong{
       {"tkae", "r1"},         {"goto", "r1", "north", "1"}, {"--domain", "999", "list"},
       {"--nmae", "x"},        {"--name", "a/b", "list"},    {"run", "/no/such/file.yaml"},
-      {"completion", "tcsh"}, {"camera", "r1", "on"},       {"list", "--name", "op2"}};
+      {"completion", "tcsh"}, {"relay", "r1", "on"},        {"list", "--name", "op2"}};
   for (const auto& words : wrong) {
     const Finished end = run(words);
     EXPECT_EQ(end.exit_code, 2) << words[0];
