@@ -47,10 +47,7 @@ std::vector<bool> unpack_blocks(store::Unpacker& in) {
 
 }  // namespace
 
-bool PhotoLedger::Held::has(PhotoPart part) const {
-  const std::vector<bool>& blocks = parts[static_cast<std::size_t>(part)].has;
-  return !blocks.empty() && std::ranges::all_of(blocks, [](bool one) { return one; });
-}
+bool PhotoLedger::Held::has(PhotoPart part) const { return parts[static_cast<std::size_t>(part)].complete(); }
 
 /// Makes what is known of a photo as long as the photo is.
 void PhotoLedger::fit(Held& held, const PhotoRef& ref) {
@@ -166,12 +163,7 @@ void PhotoLedger::acknowledged(const PeerId& id, std::uint64_t content, PhotoPar
   Held* held = find(id, content);
   if (held == nullptr) return;
   ++changes_;
-  Blocks& blocks = held->parts[static_cast<std::size_t>(part)];
-  for (std::size_t i = first; i < first + count && i < blocks.has.size(); ++i) {
-    if (!blocks.has[i] && !blocks.flying[i]) --blocks.left;
-    blocks.has[i] = true;
-    blocks.flying[i] = false;
-  }
+  held->parts[static_cast<std::size_t>(part)].acknowledged(first, count);
   held->losses = 0;
   held->pause = {};
   held->rests_until = {};
@@ -183,12 +175,7 @@ void PhotoLedger::lost(const PeerId& id, std::uint64_t content, PhotoPart part, 
   Held* held = find(id, content);
   if (held == nullptr) return;
   ++changes_;
-  Blocks& blocks = held->parts[static_cast<std::size_t>(part)];
-  for (std::size_t i = first; i < first + count && i < blocks.has.size(); ++i) {
-    if (!blocks.flying[i]) continue;
-    blocks.flying[i] = false;
-    if (!blocks.has[i]) ++blocks.left;
-  }
+  held->parts[static_cast<std::size_t>(part)].lost(first, count);
   if (held->losses < 255) ++held->losses;
   const Time now = home_.now();
   if (held->losses < kRow || now < held->rests_until) return;

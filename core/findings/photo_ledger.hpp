@@ -9,6 +9,7 @@
 
 #include "core/exec/executor.hpp"
 #include "core/findings/photo_store.hpp"
+#include "core/transfer/blocks.hpp"
 #include "core/transfer/piece.hpp"
 
 namespace adit::findings {
@@ -34,11 +35,7 @@ class PhotoLedger {
   static constexpr Duration kShortestPause = 2s, kLongestPause = 16s;
   static constexpr std::uint8_t kRow = 8;  ///< Losses in a row after which a photo rests.
 
-  /// Blocks of one part at one peer.
-  struct Blocks {
-    std::vector<bool> has{}, flying{};
-    std::size_t left{};  ///< Neither there nor on their way.
-  };
+  using Blocks = transfer::Blocks;  ///< Of one part at one peer.
   /// A photo at one peer.
   struct Held {
     std::array<Blocks, 2> parts{};  ///< By PhotoPart.

@@ -4,16 +4,8 @@
 #include <algorithm>
 
 namespace adit::findings {
-namespace {
 
 using transfer::PeerId;
-
-/// Whether a block is neither there nor on its way.
-bool lacks(const PhotoLedger::Blocks& blocks, std::size_t index) {
-  return index < blocks.has.size() && !blocks.has[index] && !blocks.flying[index];
-}
-
-}  // namespace
 
 std::size_t PhotoSource::missing(const PeerId& peer) const {
   auto& [changes, count] = counted_[peer];
@@ -49,12 +41,12 @@ std::optional<transfer::Source::Content> PhotoSource::next(std::span<const PeerI
     for (const PeerId& peer : peers)
       if (const Blocks* blocks = wanted(peer, photo, now))
         for (std::size_t i = 0; i < first; ++i)
-          if (lacks(*blocks, i)) first = i;
+          if (blocks->lacks(i)) first = i;
     if (first == blocks_of(bytes->size())) continue;
     std::size_t count = 1;
     const auto lacked = [&](const PeerId& peer) {
       const Blocks* blocks = wanted(peer, photo, now);
-      return blocks != nullptr && lacks(*blocks, first + count);
+      return blocks != nullptr && blocks->lacks(first + count);
     };
     while (count < most && std::ranges::any_of(peers, lacked)) ++count;
     ledger_.sent();
@@ -65,9 +57,9 @@ std::optional<transfer::Source::Content> PhotoSource::next(std::span<const PeerI
       if (blocks == nullptr) continue;
       bool any = false;
       for (std::size_t i = first; i < first + count; ++i) {
-        if (!lacks(*blocks, i)) continue;
-        blocks->flying[i] = any = true;
-        --blocks->left;
+        if (!blocks->lacks(i)) continue;
+        blocks->sent(i);
+        any = true;
       }
       if (any) flight.peers.push_back(peer);
     }

@@ -7,13 +7,8 @@
 #include "core/transfer/shot_piece.hpp"
 
 namespace adit::agent {
-namespace {
 
 using transfer::kShotBlock;
-
-std::size_t blocks_in(std::size_t bytes) { return (bytes + kShotBlock - 1) / kShotBlock; }
-
-}  // namespace
 
 void ShotSource::add(TakenShot shot, Time now) {
   if (shot.jpeg.empty() || shot.jpeg.size() > transfer::ShotPiece::kMaxPicture) return;
@@ -30,9 +25,7 @@ void ShotSource::add(TakenShot shot, Time now) {
   added.id = ++ids_;
   added.crc = crc32c(shot.jpeg);
   added.added = now;
-  added.left = blocks_in(shot.jpeg.size());
-  added.has.assign(added.left, false);
-  added.flying.assign(added.left, false);
+  added.blocks.begin((shot.jpeg.size() + kShotBlock - 1) / kShotBlock);
   added.taken = std::move(shot);
 }
 
@@ -53,40 +46,30 @@ ShotSource::Shot* ShotSource::find(std::uint64_t id) {
 
 void ShotSource::join(const transfer::PeerId& peer) {
   for (Shot& shot : shots_)
-    if (shot.taken.station == peer) {
-      shot.left = shot.has.size();
-      std::fill(shot.has.begin(), shot.has.end(), false);
-      std::fill(shot.flying.begin(), shot.flying.end(), false);
-    }
+    if (shot.taken.station == peer) shot.blocks.begin(shot.blocks.has.size());
 }
 
 void ShotSource::leave(const transfer::PeerId& peer) {
   for (Shot& shot : shots_)
-    if (shot.taken.station == peer)
-      for (std::size_t i = 0; i < shot.flying.size(); ++i)
-        if (shot.flying[i]) {
-          shot.flying[i] = false;
-          ++shot.left;
-        }
+    if (shot.taken.station == peer) shot.blocks.lost(0, shot.blocks.has.size());
 }
 
 std::size_t ShotSource::missing(const transfer::PeerId& peer) const {
   std::size_t sum = 0;
   for (const Shot& shot : shots_)
-    if (shot.taken.station == peer) sum += shot.left;
+    if (shot.taken.station == peer) sum += shot.blocks.left;
   return sum;
 }
 
 std::optional<transfer::Source::Content> ShotSource::next(std::span<const transfer::PeerId> peers,
                                                           std::size_t max_bytes, Time now) {
   const auto wanted = std::ranges::find_if(shots_, [&](const Shot& shot) {
-    return shot.left > 0 && !peers.empty() && shot.taken.station == peers.front();
+    return shot.blocks.left > 0 && !peers.empty() && shot.taken.station == peers.front();
   });
   if (wanted == shots_.end()) return std::nullopt;
   Shot& shot = *wanted;
-  const std::size_t blocks = shot.has.size();
   std::size_t first = 0;
-  while (first < blocks && (shot.has[first] || shot.flying[first])) ++first;
+  while (!shot.blocks.lacks(first)) ++first;  // It lacks one, as some are left.
   transfer::ShotPiece piece{.camera = shot.taken.camera,
                             .number = shot.taken.number,
                             .stamp = shot.taken.stamp,
@@ -102,11 +85,7 @@ std::optional<transfer::Source::Content> ShotSource::next(std::span<const transf
   const std::size_t room = max_bytes > piece.head() ? max_bytes - piece.head() : 0;
   const std::size_t most = std::max<std::size_t>(1, room / kShotBlock);
   std::size_t count = 0;
-  while (count < most && first + count < blocks && !shot.has[first + count] && !shot.flying[first + count]) {
-    shot.flying[first + count] = true;
-    ++count;
-  }
-  shot.left -= count;
+  for (; count < most && shot.blocks.lacks(first + count); ++count) shot.blocks.sent(first + count);
   const std::size_t begin = first * kShotBlock;
   const std::size_t end = std::min(shot.taken.jpeg.size(), (first + count) * kShotBlock);
   piece.data.assign(shot.taken.jpeg.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -120,12 +99,8 @@ void ShotSource::acknowledged(const transfer::PeerId& peer, std::uint64_t token)
   if (flight == flights_.end()) return;
   Shot* shot = find(flight->second.shot);
   if (shot == nullptr || shot->taken.station != peer) return;
-  for (std::size_t i = flight->second.first; i < flight->second.first + flight->second.count; ++i) {
-    if (!shot->has[i] && !shot->flying[i]) --shot->left;
-    shot->has[i] = true;
-    shot->flying[i] = false;
-  }
-  if (std::ranges::all_of(shot->has, [](bool has) { return has; }))
+  shot->blocks.acknowledged(flight->second.first, flight->second.count);
+  if (shot->blocks.complete())
     std::erase_if(shots_, [id = shot->id](const Shot& each) { return each.id == id; });
 }
 
@@ -134,11 +109,7 @@ void ShotSource::lost(const transfer::PeerId& peer, std::uint64_t token) {
   if (flight == flights_.end()) return;
   Shot* shot = find(flight->second.shot);
   if (shot == nullptr || shot->taken.station != peer) return;
-  for (std::size_t i = flight->second.first; i < flight->second.first + flight->second.count; ++i)
-    if (shot->flying[i]) {
-      shot->flying[i] = false;
-      ++shot->left;
-    }
+  shot->blocks.lost(flight->second.first, flight->second.count);
 }
 
 }  // namespace adit::agent

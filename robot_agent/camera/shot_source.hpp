@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "core/transfer/blocks.hpp"
 #include "core/transfer/source.hpp"
 #include "robot_agent/camera/camera_calls.hpp"
 
@@ -41,8 +42,7 @@ class ShotSource final : public transfer::Source {
     std::uint64_t id{};  ///< Within this source.
     std::uint32_t crc{};
     Time added{};
-    std::vector<bool> has{}, flying{};  ///< By block.
-    std::size_t left{};                 ///< Blocks that are neither there nor on their way.
+    transfer::Blocks blocks{};
   };
   struct Flight {
     std::uint64_t shot{};
