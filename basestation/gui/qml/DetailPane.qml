@@ -41,28 +41,14 @@ Rectangle {
         width: parent.width - 6 * Theme.mm
         height: !pane.hasCamera ? 0 : pane.details.cameraOn ? width * 0.75 + 11 * Theme.mm : 11 * Theme.mm
         visible: pane.hasCamera
-        CameraItem {
-            id: picture
-            objectName: "detailCamera"
+        CameraView {
+            name: "detailCamera"
             visible: pane.visible && pane.hasCamera && pane.details.cameraOn
             width: parent.width
             height: width * 0.75
             feeds: pane.feeds
             robot: pane.details.cameraRobot
             camera: pane.details.camera
-        }
-        Rectangle {
-            visible: picture.visible
-            width: parent.width
-            height: 5.5 * Theme.mm
-            color: "#b0141414"
-            PlainLabel {
-                objectName: "detailCameraCaption"
-                anchors.fill: parent
-                anchors.leftMargin: 1 * Theme.mm
-                color: picture.stale ? "#ffd27a" : "white"
-                text: picture.caption
-            }
         }
         PlainLabel {
             anchors.left: parent.left

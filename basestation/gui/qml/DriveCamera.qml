@@ -12,29 +12,14 @@ Rectangle {
     border.width: 1 * Theme.mm
     border.color: drive.good && !picture.stale ? Theme.goal : Theme.bad
 
-    CameraItem {
+    CameraView {
         id: picture
-        objectName: "driveCamera"
+        name: "driveCamera"
         anchors.fill: parent
         anchors.margins: pane.border.width
-        visible: pane.visible
+        lineBelow: true
         feeds: pane.feeds
         robot: pane.drive.driving ? pane.drive.robot : ""
         camera: pane.drive.camera
-    }
-    Rectangle {
-        anchors.fill: caption
-        color: "#b0141414"
-    }
-    PlainLabel {
-        id: caption
-        objectName: "driveCameraCaption"
-        anchors.bottom: picture.bottom
-        x: pane.border.width
-        width: picture.width
-        height: 5.5 * Theme.mm
-        leftPadding: 1 * Theme.mm
-        color: picture.stale ? "#ffd27a" : "white"
-        text: picture.caption
     }
 }
