@@ -250,10 +250,9 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
       [&e, &strand](const InputFault& fault) { e.inputs->report(fault, strand.now()); });
   if (auto opened = e.reports->open(io_of(*command.slot(), robot)); !opened) return opened.error();
 
-  const bool routes_it = params.platform.router != "none";
-  const bool maps_it = params.perception == PerceptionLevel::slam;
+  const bool routes_it = has(router), maps_it = has(map);
   e.stairs =
-      params.perception != PerceptionLevel::off
+      has(stairs)
           ? std::make_unique<StairsReporter>(
                 params.name, *e.findings,
                 StairsReporter::Submaps{[&e](const findings::Anchor& anchor) -> std::optional<Pose3> {
@@ -262,10 +261,9 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
                                         },
                                         [&e] { return e.map ? e.map->pose_changes() : std::uint64_t{0}; }})
           : nullptr;
-  if (!params.platform.cameras.empty()) e.shots = std::make_unique<ShotSource>();
+  if (has(cameras)) e.shots = std::make_unique<ShotSource>();
   for (Unit* unit : {&planner, &router, &sensors, &map, &stairs, &cameras})
-    if ((unit != &router || routes_it) && (unit != &map || maps_it) && (unit != &stairs || e.stairs) &&
-        (unit != &cameras || e.shots))
+    if (has(*unit))
       if (const auto opened = unit->open(); !opened) return opened.error();
   if (maps_it) open_map();
   if (params.carry_maps) e.carrier = std::make_unique<Carrier>(Random(params.seed).fork(kCarrySalt).next());
@@ -442,11 +440,17 @@ void Agent::Impl::with_findings(std::function<Result<void>(FindingSource& source
   });
 }
 
+bool Agent::Impl::has(const Unit& unit) const {
+  if (&unit == &router) return params.platform.router != "none";
+  if (&unit == &map) return params.perception == PerceptionLevel::slam;
+  if (&unit == &stairs) return params.perception != PerceptionLevel::off;
+  if (&unit == &cameras) return !params.platform.cameras.empty();
+  return true;
+}
+
 Unit* Agent::Impl::find(const std::string& component) {
   for (Unit* unit : {&command, &planner, &router, &sensors, &map, &stairs, &cameras})
-    if (unit->name() == component && (unit != &router || context->router) && (unit != &map || context->map) &&
-        (unit != &stairs || context->stairs) && (unit != &cameras || context->shots))
-      return unit;
+    if (unit->name() == component && has(*unit)) return unit;
   return nullptr;
 }
 

@@ -26,6 +26,8 @@ struct Agent::Impl {
   Impl& operator=(const Impl&) = delete;
 
   Result<void> open(wire::Participant& radio, wire::Participant& robot);
+  /// Whether this robot has that component.
+  bool has(const Unit& unit) const;
   Unit* find(const std::string& component);
   Executor& command_strand() { return *command.slot()->strand; }
   /// Runs `work` on the command strand; all operators are notified of its error.

@@ -99,12 +99,7 @@ void CameraCommands::write(const Request& request, const std::string& camera, co
   const std::string file = request.word("FILE");
   strand_.compute(
       {.name = "camera file", .modelled = 20ms, .watchdog = 60s, .pool = PoolKind::io},
-      [bytes = picture.jpeg, file] {
-        return perception::write_file_atomically(file, [&](std::ostream& to) {
-          to.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-          return Result<void>();
-        });
-      },
+      [bytes = picture.jpeg, file] { return perception::write_file_atomically(file, bytes); },
       [request, camera, done, file, size = picture.jpeg.size(), age = picture.age, place = picture.place,
        alive = std::weak_ptr(alive_)](const Result<void>& written) {
         if (alive.expired()) return;

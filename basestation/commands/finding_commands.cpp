@@ -171,12 +171,7 @@ void FindingCommands::write_photo(const Request& request, const findings::Key& k
   const std::string file = request.word("FILE");
   strand_.compute(
       {.name = "photo file", .modelled = 20ms, .watchdog = 60s, .pool = PoolKind::io},
-      [bytes = *bytes, file] {
-        return perception::write_file_atomically(file, [&](std::ostream& to) {
-          to.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-          return Result<void>();
-        });
-      },
+      [bytes = *bytes, file] { return perception::write_file_atomically(file, bytes); },
       [request, done, file, percent, is_whole = whole != nullptr,
        alive = std::weak_ptr(alive_)](const Result<void>& written) {
         if (alive.expired()) return;

@@ -249,16 +249,20 @@ void Server::ask_map(std::uint64_t number, Client& client, const json& wanted) {
   if (!client.map_asked) answer(client, {{"wrong", "the station has too much to do"}});
 }
 
+std::function<void(const json&)> Server::open_request(std::uint64_t number, Client& client, std::int64_t id) {
+  client.open[id] = std::make_shared<std::uint64_t>(0);
+  return [this, number, id](const json& outcome) {
+    hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", outcome}}});
+  };
+}
+
 void Server::ask_photo(std::uint64_t number, Client& client, std::int64_t id, const std::string& photo,
                        const std::string& part) {
   const auto content = photo_id_from(photo);
   const auto which = photo_part_from(part);
   if (!content || !which)
     return answer(client, {{"wrong", "a photo has sixteen hexadecimal digits, and a part"}});
-  client.open[id] = std::make_shared<std::uint64_t>(0);
-  const auto reply = [this, number, id](const json& outcome) {
-    hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", outcome}}});
-  };
+  const auto reply = open_request(number, client, id);
   const bool posted = strand_->post([this, reply, content, which] {
     const store::Bytes* bytes = station_->photo(*content, *which);
     reply(json_of(bytes ? Outcome{.json = photo_json(*bytes)}
@@ -268,10 +272,7 @@ void Server::ask_photo(std::uint64_t number, Client& client, std::int64_t id, co
 }
 
 void Server::ask_camera(std::uint64_t number, Client& client, std::int64_t id, const CameraRequest& wanted) {
-  client.open[id] = std::make_shared<std::uint64_t>(0);
-  const auto reply = [this, number, id](const json& outcome) {
-    hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", outcome}}});
-  };
+  const auto reply = open_request(number, client, id);
   const bool posted = strand_->post([this, reply, wanted] {
     Cameras& cameras = station_->cameras();
     if (const auto looked = cameras.look(wanted.robot, wanted.camera, wanted.width, wanted.rate); !looked)

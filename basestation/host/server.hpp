@@ -114,6 +114,9 @@ class Server {
   void begin(std::uint64_t number, Client& client, std::int64_t id, const std::string& line,
              const std::string& robot);
   void ask_map(std::uint64_t number, Client& client, const nlohmann::json& wanted);
+  /// Opens the client's request `id`; the function, from any thread, answers it with an outcome.
+  std::function<void(const nlohmann::json& outcome)> open_request(std::uint64_t number, Client& client,
+                                                                  std::int64_t id);
   /// Answers the client's request `id` for a part of a photo.
   void ask_photo(std::uint64_t number, Client& client, std::int64_t id, const std::string& photo,
                  const std::string& part);

@@ -29,14 +29,6 @@ struct CameraPart::Camera {
   std::vector<std::pair<transfer::PeerId, std::uint32_t>> shooting{};  ///< Whose picture is being coded.
 };
 
-struct CameraPart::Coded {
-  perception::StripeEncoder::Coded picture{};
-};
-
-struct CameraPart::Output {
-  wire::Writer<radio::CameraPiece> pieces{};
-};
-
 CameraPart::CameraPart(CameraParams params, Executor& strand, Log log, const CameraEnds& ends,
                        CameraService& service, const PlaceService& place,
                        std::function<void(const InputFault&)> fault)
@@ -46,8 +38,7 @@ CameraPart::CameraPart(CameraParams params, Executor& strand, Log log, const Cam
       service_(service),
       place_(place),
       fault_(std::move(fault)),
-      pacer_(params_.pacing),
-      output_(std::make_unique<Output>()) {
+      pacer_(params_.pacing) {
   for (const CameraConfig& config : params_.cameras)
     cameras_.push_back(
         std::make_unique<Camera>(Camera{.config = config,
@@ -158,11 +149,11 @@ void CameraPart::send(Time at) {
       std::ranges::count_if(cameras_, [&](const auto& camera) { return camera->stream.is_watched(at); });
   if (watched == 0) return;
   // At the first look, so that a robot at which no station ever looks has no endpoint for it.
-  if (!output_->pieces) {
-    if (const auto opened = ends_.radio.open(output_->pieces, wire::topics::kCamera); !opened)
+  if (!pieces_) {
+    if (const auto opened = ends_.radio.open(pieces_, wire::topics::kCamera); !opened)
       return fail(opened.error().text);
   }
-  const std::size_t readers = std::max<std::size_t>(1, output_->pieces.matched());
+  const std::size_t readers = std::max<std::size_t>(1, pieces_.matched());
   pacer_.observe(at, ends_.radio.wire.sender(), readers);
   for (const auto& camera : cameras_) {
     const CameraStream::Arrivals report = camera->stream.take_arrivals();
@@ -181,14 +172,14 @@ void CameraPart::send(Time at) {
     idle = 0;
     contract::CameraPiece piece{params_.robot, camera.config.name, camera.stream.next_piece(at)};
     pacer_.sent(piece.data.size());
-    (void)output_->pieces.write(encode(piece));  // Best effort: a lost piece leaves a gap.
-    if (!camera.stream.has_pieces()) ++turn_;    // One picture each.
+    (void)pieces_.write(encode(piece));        // Best effort: a lost piece leaves a gap.
+    if (!camera.stream.has_pieces()) ++turn_;  // One picture each.
   }
 }
 
 bool CameraPart::needs_live(const Camera& camera) const {
   // The first picture waits until a station's reader is there.
-  return output_->pieces.matched() > 0 && camera.stream.is_ready(now());
+  return pieces_.matched() > 0 && camera.stream.is_ready(now());
 }
 
 bool CameraPart::needs_shot(const Camera& camera) const {
@@ -219,25 +210,25 @@ void CameraPart::code(Camera& camera, const Taken& taken) {
        .priority = JobPriority::low,
        .lane = camera.config.name},
       [picture = taken.picture, encoder = camera.stream.encoder(), rung = camera.stream.rung(), stripe,
-       at = now()]() -> Result<Coded> {
+       at = now()]() -> Result<perception::StripeEncoder::Coded> {
         const auto pixels = pixels_of(*picture, rung.width, rung.height);
         if (!pixels) return pixels.error();
         const perception::PictureFormat format{.width = static_cast<std::uint16_t>(pixels->width),
                                                .height = static_cast<std::uint16_t>(pixels->height),
                                                .colour = rung.colour && pixels->channels == 3,
                                                .quality = rung.quality};
-        Coded out{encoder->encode(*pixels, format, stripe, at)};
-        if (out.picture.format.span == 0) return Error{Reason::internal, "a picture could not be coded"};
+        auto out = encoder->encode(*pixels, format, stripe, at);
+        if (out.format.span == 0) return Error{Reason::internal, "a picture could not be coded"};
         return out;
       },
-      [this, &camera, taken](Result<Coded> result) {
+      [this, &camera, taken](Result<perception::StripeEncoder::Coded> result) {
         if (!result) {
           camera.stream.failed();
           return refuse(camera, result.error());
         }
         std::optional<Pose3> T_map_camera;
         if (taken.T_map_base) T_map_camera = *taken.T_map_base * camera.config.mounting.pose();
-        camera.stream.coded(std::move(result->picture), taken.picture->stamp, T_map_camera, taken.exposed,
+        camera.stream.coded(std::move(*result), taken.picture->stamp, T_map_camera, taken.exposed,
                             pacer_.piece_bytes(), now());
         send(now());
       });

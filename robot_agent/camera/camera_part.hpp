@@ -48,7 +48,6 @@ class CameraPart : public Component {
 
  private:
   struct Camera;
-  struct Coded;
   /// A picture of the driver, with the pose of the body at its exposure.
   struct Taken {
     std::shared_ptr<const DriverPicture> picture{};
@@ -81,8 +80,7 @@ class CameraPart : public Component {
   const PlaceService& place_;
   std::function<void(const InputFault&)> fault_;
   transfer::Pacer pacer_;
-  struct Output;
-  std::unique_ptr<Output> output_;
+  wire::Writer<radio::CameraPiece> pieces_{};  ///< Open since the first look.
   std::vector<std::unique_ptr<Camera>> cameras_{};
   std::vector<TakenShot> fresh_{}, shots_{};  ///< `shots_`: in the last answer.
   std::uint64_t batch_{};                     ///< Of that answer.

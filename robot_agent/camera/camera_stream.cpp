@@ -48,11 +48,7 @@ bool CameraStream::is_watched(Time now) const {
 }
 
 bool CameraStream::shot_wanted(Time now) const {
-  return std::ranges::any_of(lookers_, [&](const auto& each) {
-    const Looker& looker = each.second;
-    return looker.view.shot != 0 && looker.view.shot != looker.shot_done &&
-           now - looker.shot_since < kShotWait;
-  });
+  return std::ranges::any_of(lookers_, [&](const auto& each) { return each.second.wants_shot(now); });
 }
 
 void CameraStream::adapt(double bytes_per_second, Time now) {
@@ -130,8 +126,7 @@ std::vector<std::uint8_t> CameraStream::next_piece(Time now) {
 std::vector<std::pair<transfer::PeerId, std::uint32_t>> CameraStream::wanted_shots(Time now) const {
   std::vector<std::pair<transfer::PeerId, std::uint32_t>> out;
   for (const auto& [station, looker] : lookers_)
-    if (looker.view.shot != 0 && looker.view.shot != looker.shot_done && now - looker.shot_since < kShotWait)
-      out.emplace_back(station, looker.view.shot);
+    if (looker.wants_shot(now)) out.emplace_back(station, looker.view.shot);
   return out;
 }
 

@@ -75,6 +75,10 @@ class CameraStream {
     Time shot_since{};
     std::uint32_t arrived{}, sent{};  ///< At its last report of this run.
     bool reported{};                  ///< There was one since it began to look.
+
+    bool wants_shot(Time now) const {
+      return view.shot != 0 && view.shot != shot_done && now - shot_since < kShotWait;
+    }
   };
   std::uint32_t run_;
   std::map<transfer::PeerId, Looker> lookers_{};

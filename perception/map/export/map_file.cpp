@@ -82,6 +82,13 @@ Result<void> write_file_atomically(const std::filesystem::path& file,
   return write_failed(file, error);
 }
 
+Result<void> write_file_atomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes) {
+  return write_file_atomically(file, [&](std::ostream& to) {
+    to.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    return Result<void>();
+  });
+}
+
 Result<void> save_map(const VoxelImage& image, const std::filesystem::path& file,
                       const SaveOptions& options) {
   using Writer = Result<void> (*)(const VoxelImage&, std::ostream&);

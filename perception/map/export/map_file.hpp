@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
 #include <optional>
+#include <span>
 
 #include "core/result/result.hpp"
 #include "perception/map/voxel_image.hpp"
@@ -15,6 +17,9 @@ namespace adit::perception {
 /// cannot_write with the file and the system's reason.
 Result<void> write_file_atomically(const std::filesystem::path& file,
                                    const std::function<Result<void>(std::ostream&)>& write);
+
+/// Writes these bytes so. Error: cannot_write.
+Result<void> write_file_atomically(const std::filesystem::path& file, std::span<const std::uint8_t> bytes);
 
 /// Options of save_map().
 struct SaveOptions {
