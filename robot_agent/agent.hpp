@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/component/fault.hpp"
@@ -67,6 +68,8 @@ struct AgentParams {
   std::size_t findings{512};  ///< Maximum number of stored findings, [1, 65536].
   DetectionParams detections{};
   ReportParams reports{};
+  std::optional<ObjectsParams> objects{};       ///< Nothing: the agent detects no objects itself.
+  perception::DetectorFactory make_detector{};  ///< Of `objects`; empty: they are refused.
   SupervisionParams supervision{};
   /// Requests a restart of the agent's process, because a component could not be restarted. Called once, on a
   /// strand of the agent; empty: the agent keeps running and sends zero to the driver.

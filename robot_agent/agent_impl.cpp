@@ -48,11 +48,12 @@ Agent::Impl::Impl(const AgentParams& agent_params, Runtime& agent_runtime)
       map(agent_runtime, map_unit()),
       stairs(agent_runtime, stairs_unit()),
       cameras(agent_runtime, cameras_unit()),
+      objects(agent_runtime, objects_unit()),
       watch_strand(agent_runtime.strand("supervisor")) {}
 
 Agent::Impl::~Impl() {
   watch_strand->end();
-  for (Unit* unit : {&command, &sensors, &planner, &router, &map, &stairs, &cameras}) unit->end();
+  for (Unit* unit : {&command, &sensors, &planner, &router, &map, &stairs, &cameras, &objects}) unit->end();
   end_disk();
   if (watch) watch->stop();
   if (context && context->radio) context->radio->close();
@@ -126,6 +127,26 @@ UnitParams Agent::Impl::cameras_unit() {
   unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
     camera_ends =
         std::make_unique<CameraEnds>(CameraEnds{io_of(*slot, *context->wire), io_of(*slot, *robot_wire)});
+    return std::shared_ptr<void>();
+  };
+  return unit;
+}
+
+UnitParams Agent::Impl::objects_unit() {
+  UnitParams unit{.name = "objects", .dedicated = true};
+  unit.make = [this](Executor& strand) -> std::unique_ptr<Component> {
+    return std::make_unique<ObjectsPart>(ObjectsPartParams{.cameras = params.platform.cameras,
+                                                           .detector = params.objects->detector,
+                                                           .make = params.make_detector,
+                                                           .period = params.objects->period},
+                                         strand, Log(params.log, params.name), *objects_io,
+                                         context->objects_search,
+                                         [&inputs = *context->inputs, &strand](const InputFault& fault) {
+                                           inputs.report(fault, strand.now());
+                                         });
+  };
+  unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
+    objects_io = std::make_unique<wire::ComponentIo>(io_of(*slot, *robot_wire));
     return std::shared_ptr<void>();
   };
   return unit;
@@ -261,8 +282,15 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
                                         },
                                         [&e] { return e.map ? e.map->pose_changes() : std::uint64_t{0}; }})
           : nullptr;
+  if (has(objects))
+    e.objects = std::make_unique<DetectionReporter>(
+        params.objects->report, params.name, *e.findings,
+        [&e](const findings::Photo& photo, std::uint8_t importance) -> std::optional<findings::PhotoRef> {
+          if (!e.photos->put(photo, importance)) return std::nullopt;
+          return findings::ref_of(photo);
+        });
   if (has(cameras)) e.shots = std::make_unique<ShotSource>();
-  for (Unit* unit : {&planner, &router, &sensors, &map, &stairs, &cameras})
+  for (Unit* unit : {&planner, &router, &sensors, &map, &stairs, &cameras, &objects})
     if (has(*unit))
       if (const auto opened = unit->open(); !opened) return opened.error();
   if (maps_it) open_map();
@@ -288,6 +316,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (maps_it) watch->watch(map, {.name = "map"});
   if (e.stairs) watch->watch(stairs, {.name = "stairs"});
   if (e.shots) watch->watch(cameras, {.name = "cameras"});
+  if (e.objects) watch->watch(objects, {.name = "objects"});
   if (params.disk) watch->note(store_health(false));
   return e.radio->listen(
       {e.directory, e.namesakes,
@@ -445,11 +474,12 @@ bool Agent::Impl::has(const Unit& unit) const {
   if (&unit == &map) return params.perception == PerceptionLevel::slam;
   if (&unit == &stairs) return params.perception != PerceptionLevel::off;
   if (&unit == &cameras) return !params.platform.cameras.empty();
+  if (&unit == &objects) return params.objects && !params.platform.cameras.empty();
   return true;
 }
 
 Unit* Agent::Impl::find(const std::string& component) {
-  for (Unit* unit : {&command, &planner, &router, &sensors, &map, &stairs, &cameras})
+  for (Unit* unit : {&command, &planner, &router, &sensors, &map, &stairs, &cameras, &objects})
     if (unit->name() == component && has(*unit)) return unit;
   return nullptr;
 }

@@ -5,6 +5,7 @@
 #include "robot_agent/camera/camera_part.hpp"
 #include "robot_agent/command_component.hpp"
 #include "robot_agent/motion/scans.hpp"
+#include "robot_agent/objects/objects_part.hpp"
 
 namespace adit::agent {
 
@@ -37,9 +38,10 @@ struct Agent::Impl {
   Runtime& runtime;
   wire::Participant* robot_wire{};
   std::unique_ptr<Context> context{};
-  Unit command, planner, router, sensors, map, stairs, cameras;
+  Unit command, planner, router, sensors, map, stairs, cameras, objects;
   /// The ends of the component `cameras` on both domains, for its present strand.
   std::unique_ptr<CameraEnds> camera_ends{};
+  std::unique_ptr<wire::ComponentIo> objects_io{};  ///< The same of the component `objects`, robot domain.
   std::shared_ptr<Strand> watch_strand;
   std::shared_ptr<Strand> disk_strand{};  ///< Null: there is no disk, or its writes take no time.
   std::unique_ptr<AgentSupervisor> watch{};
@@ -67,6 +69,7 @@ struct Agent::Impl {
   UnitParams map_unit();
   UnitParams stairs_unit();
   UnitParams cameras_unit();
+  UnitParams objects_unit();
 };
 
 }  // namespace adit::agent

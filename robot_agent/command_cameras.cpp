@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the command component does for the component `cameras`.
+// What the command component does for the components `cameras` and `objects`.
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "robot_agent/command_component.hpp"
@@ -22,6 +23,28 @@ void Agent::CommandComponent::ask_cameras(CameraOrder order) {
     camera_batch_ = answer->batch;
     for (const TakenShot& shot : answer->shots) context_.shots->add(shot, now());
   });
+}
+
+void Agent::CommandComponent::seek_objects(const std::shared_ptr<const Scan>& scan, const LidarScan& lidar) {
+  const Localisation health = localiser_.health(now());
+  if (!context_.objects || health == Localisation::lost || health == Localisation::starting) return;
+  auto job = std::make_shared<ObjectsJob>(
+      ObjectsJob{scan, team(now()), frames_.odom_epoch(), lidar.stamp, lidar.received});
+  call(context_.objects_search, std::shared_ptr<const ObjectsJob>(std::move(job)), {.deadline = 1s},
+       [this](const Result<ObjectsStep>& step) {
+         if (!step || step->picture == 0 || step->odom_epoch != frames_.odom_epoch()) return;
+         for (const SeenObject& seen : step->objects) {
+           const Eigen::Vector3d place = frames_.map_frame().T_map_odom * seen.position;
+           const Detection detection{.source = "camera " + seen.camera,
+                                     .kind = kind_of(seen.kind),
+                                     .score = seen.score,
+                                     .sigma = std::hypot(seen.sigma, localiser_.sigma()),
+                                     .photo = seen.photo};
+           if (const auto taken = context_.objects->take(detection, place, step->picture, now()); !taken)
+             context_.notifier->to_all(Severity::warning, "finding_refused", taken.reason(),
+                                       "an object: " + taken.error().text);
+         }
+       });
 }
 
 PlaceThen Agent::CommandComponent::place_then(const PlaceQuery& query) const {

@@ -213,6 +213,7 @@ void Agent::CommandComponent::located(std::shared_ptr<Scan> scan, const LidarSca
   if (localiser_.recognised()) {
     add_to_map(scan);
     seek_stairs(scan);
+    seek_objects(scan, lidar);
   }
   navigation_.set_stairs(known_stairs());
   navigation_.add_scan(std::move(scan), lidar.received, now(), team(now()));

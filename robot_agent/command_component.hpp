@@ -33,6 +33,7 @@
 #include "robot_agent/motion/scans.hpp"
 #include "robot_agent/motion/topic_types.hpp"
 #include "robot_agent/notices/notices.hpp"
+#include "robot_agent/objects/objects_calls.hpp"
 #include "robot_agent/perception/map_keeper.hpp"
 #include "robot_agent/place/localiser.hpp"
 #include "robot_agent/radio/notifier.hpp"
@@ -82,6 +83,8 @@ struct Agent::Context {
   std::unique_ptr<ContentSender> content{};  ///< Of the findings and the maps.
   MapService map_insertion{"map insertion", 2};
   CameraService cameras{"cameras", 4};
+  ObjectsService objects_search{"objects", 2};
+  std::unique_ptr<DetectionReporter> objects{};  ///< Null: this robot detects no objects.
   PlaceService place_then{"place of a picture", 16};
   std::unique_ptr<ShotSource> shots{};  ///< Null: this robot has no camera.
   StairsService stairs_search{"stairs", 2};
@@ -149,6 +152,7 @@ class Agent::CommandComponent : public Component {
   void add_to_map(const std::shared_ptr<const Scan>& scan);
   /// Offers each scan to the search for staircases, and reports those that it finds.
   void seek_stairs(const std::shared_ptr<const Scan>& scan);
+  void seek_objects(const std::shared_ptr<const Scan>& scan, const LidarScan& lidar);
   /// Those that this robot found, odometry frame.
   std::vector<Staircase> known_stairs() const;
   /// Sends findings and maps to the stations, or its map to carriers, as the link allows.

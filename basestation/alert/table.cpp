@@ -34,6 +34,7 @@ constexpr std::array kRows{
     AlertRow{"sensor_refused", soon, Ends::understood},
     AlertRow{"sensor_silent", soon},
     AlertRow{"camera_clock", soon, Ends::understood},
+    AlertRow{"detector_refused", soon, Ends::understood},
     AlertRow{"type_differs", soon, Ends::understood},
     AlertRow{"velocities_unread", soon, Ends::understood},
     AlertRow{"two_sources", soon, Ends::understood},

@@ -61,6 +61,7 @@ class Content {
   /// Findings whose whole photo is here.
   std::size_t whole_photos() const;
   const FindingBook& book() const { return book_; }
+  const Marks& marks() const { return marks_; }
   const PieceReader& pieces() const { return pieces_; }
   FindingCounts finding_counts() const;
   const MapReceiver& maps() const { return map_.receiver(); }

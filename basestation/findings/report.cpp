@@ -2,13 +2,17 @@
 #include "basestation/findings/report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "basestation/findings/placed.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
 #include "core/command/words.hpp"
+#include "core/findings/object_data.hpp"
 
 namespace adit::station {
 namespace {
@@ -43,6 +47,57 @@ std::string verdict_text(const FoundItem& item) {
   return item.verdict == Verdict::open ? "withdrawn" : to_string(item.verdict) + std::string(", withdrawn");
 }
 
+/// A row of the report, and whether it is of a robot's own detector.
+struct Row {
+  FoundItem item{};
+  bool object{};
+};
+
+bool is_same_object(const FoundItem& a, const FoundItem& b) {
+  if (a.withdrawn || b.withdrawn || a.kind != b.kind) return false;
+  const auto &p = a.position, &q = b.position;
+  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) <= kSameObject;
+}
+
+/// Adds an object to the row that stands for it.
+void fold(const Row& row, Row& first) {
+  FoundItem& item = first.item;
+  item.also.push_back(row.item.number);
+  item.text += ", also by " + row.item.robot;
+  if (item.verdict == Verdict::open) item.verdict = row.item.verdict;
+  if (!item.photo) item.photo = row.item.photo;
+}
+
+/// Lists each object once, in the order of the rows.
+std::vector<FoundItem> without_doubles(std::vector<Row> rows) {
+  std::vector<Row*> objects;
+  for (Row& row : rows)
+    if (row.object) objects.push_back(&row);
+  std::ranges::stable_sort(objects, {}, [](const Row* row) { return row->item.number; });
+  struct Group {
+    Row* first{};
+    std::set<std::string> robots{};
+  };
+  std::vector<Group> groups;
+  std::set<const Row*> folded;
+  for (Row* row : objects) {
+    const auto known = std::ranges::find_if(groups, [row](const Group& group) {
+      return !group.robots.contains(row->item.robot) && is_same_object(group.first->item, row->item);
+    });
+    if (known == groups.end()) {
+      groups.push_back({row, {row->item.robot}});
+      continue;
+    }
+    known->robots.insert(row->item.robot);
+    fold(*row, *known->first);
+    folded.insert(row);
+  }
+  std::vector<FoundItem> out;
+  for (Row& row : rows)
+    if (!folded.contains(&row)) out.push_back(std::move(row.item));
+  return out;
+}
+
 }  // namespace
 
 FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Marks& marks,
@@ -50,6 +105,7 @@ FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, co
                             const std::vector<std::string>& robots) {
   FoundReport report;
   std::map<std::string, std::uint32_t> here;
+  std::vector<Row> rows;
   for (const Finding* f : chosen(desk, robots)) {
     FoundItem item{.robot = f->key.robot,
                    .id = findings::id_text(f->key.id),
@@ -70,8 +126,9 @@ FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, co
       item.note = entry->note;
     }
     ++here[item.robot];
-    report.findings.push_back(std::move(item));
+    rows.push_back({std::move(item), findings::read_object(*f).has_value()});
   }
+  report.findings = without_doubles(std::move(rows));
   for (const auto& [robot, says] : desk.robots())
     if (robots.empty() || std::find(robots.begin(), robots.end(), robot) != robots.end())
       report.at_robots.push_back(

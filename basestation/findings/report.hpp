@@ -14,8 +14,11 @@
 
 namespace adit::station {
 
+inline constexpr double kSameObject = 2.0;  ///< m
+
 /// The findings of the named robots and stations, or of all, where they are in the map now; the most
-/// important first.
+/// important first. Objects of one kind that the detectors of different robots found within kSameObject are
+/// one: the finding with the lowest number is listed and names the others.
 FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Marks& marks,
                             const findings::PhotoStore& photos, const ChunkStore& chunks, const Fleet& fleet,
                             const std::vector<std::string>& robots);

@@ -40,7 +40,9 @@ struct FoundItem {
   std::string note{};                 ///< The operator's.
   bool withdrawn{false};              ///< Its robot or operator took it back.
   std::optional<FoundPhoto> photo{};  ///< Unset: it has none.
-  bool mark{false};                   ///< An operator marked it; `robot` is the name of his station.
+  /// Numbers of findings of other robots that are the same object; they are not listed themselves.
+  std::vector<std::uint32_t> also{};
+  bool mark{false};  ///< An operator marked it; `robot` is the name of his station.
   bool operator==(const FoundItem&) const = default;
 };
 

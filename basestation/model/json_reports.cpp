@@ -146,6 +146,7 @@ void fields(Io& io, Of<Io, FoundItem>& item) {
   io.word("verdict", item.verdict, Verdict::rejected, [](Verdict verdict) { return to_string(verdict); });
   io.field("note", item.note);
   if (Io::kReads || item.withdrawn) io.field("withdrawn", item.withdrawn);
+  if (Io::kReads || !item.also.empty()) io.field("also", item.also);
   if (Io::kReads || item.mark) io.field("mark", item.mark);
   if (Io::kReads || item.photo) io.field("photo", item.photo);
 }

@@ -83,6 +83,8 @@ class Station {
   const Cameras& cameras() const { return cameras_; }
   /// The staircases of the map, computed from all findings.
   StairsReport stairs() const;
+  /// The findings of all robots, as `findings` lists them.
+  FoundReport found() const;
   /// True after `down`, until `up`.
   bool closed() const { return !presence_.up(); }
 

@@ -7,25 +7,20 @@
 
 #include "adit/camera.h"
 #include "core/wire/topics.hpp"
-#include "sensor_msgs/msg/CompressedImage.h"
-#include "sensor_msgs/msg/Image.h"
+#include "robot_agent/camera/camera_reader.hpp"
 
 namespace adit::agent {
 namespace {
 
 constexpr Duration kTick = 10ms;
-constexpr Duration kSeek = 1s;        // Between two looks at what the driver writes.
 constexpr std::size_t kMaxShots = 4;  // That did not arrive at the command component.
 constexpr std::size_t kMaxArrivals = 256;
 
 }  // namespace
 
 struct CameraPart::Camera {
-  CameraConfig config{};
   CameraStream stream;
-  std::string topic{}, raw{}, compressed{};  ///< `topic` without rt/, the others with it.
-  std::unique_ptr<wire::RawReader> reader{};
-  Time sought{}, heard{};  ///< When the topics were looked for, and when a picture came.
+  std::optional<CameraReader> reader{};  ///< Never empty after the construction.
   std::vector<std::pair<transfer::PeerId, std::uint32_t>> shooting{};  ///< Whose picture is being coded.
 };
 
@@ -39,13 +34,18 @@ CameraPart::CameraPart(CameraParams params, Executor& strand, Log log, const Cam
       place_(place),
       fault_(std::move(fault)),
       pacer_(params_.pacing) {
-  for (const CameraConfig& config : params_.cameras)
-    cameras_.push_back(
-        std::make_unique<Camera>(Camera{.config = config,
-                                        .stream = CameraStream(params_.run),
-                                        .topic = config.topic,
-                                        .raw = "rt/" + config.topic + "/image_raw",
-                                        .compressed = "rt/" + config.topic + "/image_raw/compressed"}));
+  for (const CameraConfig& config : params_.cameras) {
+    Camera& camera =
+        *cameras_.emplace_back(std::make_unique<Camera>(Camera{.stream = CameraStream(params_.run)}));
+    camera.reader.emplace(
+        config,
+        CameraReader::Outputs{[this, &camera] { return needs_live(camera) || needs_shot(camera); },
+                              [this, &camera](std::shared_ptr<const DriverPicture> picture) {
+                                take(camera, std::move(picture));
+                              },
+                              [this](const std::function<void()>& work) { protect([&work] { work(); }); },
+                              [this](const InputFault& problem) { fault_(problem); }});
+  }
 }
 
 CameraPart::~CameraPart() = default;
@@ -57,14 +57,14 @@ Result<void> CameraPart::on_start() {
 
 void CameraPart::on_stop() {
   tick_.cancel();
-  for (const auto& camera : cameras_) camera->reader.reset();
+  for (const auto& camera : cameras_) camera->reader->close();
 }
 
 CameraAnswer CameraPart::take(const CameraOrder& order) {
   if (order.station)
     for (const contract::CameraView& view : order.views)
       for (const auto& camera : cameras_)
-        if (camera->config.name == view.camera) camera->stream.look(*order.station, view, now());
+        if (camera->reader->config().name == view.camera) camera->stream.look(*order.station, view, now());
   update();
   if (order.got == batch_) shots_.clear();  // They arrived.
   if (!fresh_.empty()) {
@@ -85,63 +85,18 @@ void CameraPart::update() {
     any = any || active;
     if (!camera->stream.is_watched(now())) camera->stream.drop();
     if (!active) {
-      camera->reader.reset();
+      camera->reader->close();
       continue;
     }
-    if (!camera->reader && (camera->sought == Time{} || now() - camera->sought >= kSeek)) open(*camera);
+    camera->reader->tick(ends_.robot, now());
   }
   if (any && !tick_.active()) tick_ = every(kTick, [this] { tick(); });
   if (!any) tick_.cancel();
 }
 
-void CameraPart::open(Camera& camera) {
-  camera.sought = now();
-  const auto written = [&](const std::string& name) {
-    const auto ends = ends_.robot.wire.endpoints(name);
-    return std::ranges::any_of(ends, [](const wire::RemoteEndpoint& end) { return end.writes; });
-  };
-  // Of a driver that writes both, the smaller messages.
-  const bool compressed = written(camera.compressed);
-  if (!compressed && !written(camera.raw))
-    return report(camera,
-                  {Reason::driver_silent, "no driver writes /" + camera.topic + "/image_raw or /" +
-                                              camera.topic + "/image_raw/compressed"},
-                  "sensor_silent");
-  // A camera sends far more pictures than are needed: only those are decoded.
-  const auto handler = [this, &camera]<class Message>(const Message&) {
-    return [this, &camera](std::span<const std::uint8_t> bytes, const wire::SampleInfo& info) {
-      bool good = true;
-      protect([&] {
-        camera.heard = info.received;
-        if (!needs_live(camera) && !needs_shot(camera)) return;
-        Message message;
-        good = wire::decode(bytes, message);
-        if (good) take(camera, std::make_shared<DriverPicture>(picture_of(message, info.received)));
-      });
-      return good;
-    };
-  };
-  wire::TopicInfo topic = wire::topics::kImage;
-  if (compressed) topic = wire::topics::kCompressedImage;
-  topic.name = compressed ? camera.compressed.c_str() : camera.raw.c_str();
-  auto reader =
-      ends_.robot.wire.make_reader(topic, {}, ends_.robot.strand,
-                                   compressed ? wire::RawHandler(handler(sensor_msgs::msg::CompressedImage{}))
-                                              : wire::RawHandler(handler(sensor_msgs::msg::Image{})));
-  if (!reader) return report(camera, reader.error(), "sensor_silent");
-  camera.reader = std::move(*reader);
-  camera.heard = now();
-}
-
 void CameraPart::tick() {
   update();
-  const Time at = now();
-  for (const auto& camera : cameras_)
-    if (camera->reader && at - camera->heard > kSilent) {
-      report(*camera, {Reason::driver_silent, "its driver sends no pictures"}, "sensor_silent");
-      camera->reader.reset();  // Looks again for what is written.
-    }
-  send(at);
+  send(now());
 }
 
 void CameraPart::send(Time at) {
@@ -170,7 +125,7 @@ void CameraPart::send(Time at) {
       continue;
     }
     idle = 0;
-    contract::CameraPiece piece{params_.robot, camera.config.name, camera.stream.next_piece(at)};
+    contract::CameraPiece piece{params_.robot, camera.reader->config().name, camera.stream.next_piece(at)};
     pacer_.sent(piece.data.size());
     (void)pieces_.write(encode(piece));        // Best effort: a lost piece leaves a gap.
     if (!camera.stream.has_pieces()) ++turn_;  // One picture each.
@@ -208,7 +163,7 @@ void CameraPart::code(Camera& camera, const Taken& taken) {
       {.name = "camera picture",
        .modelled = params_.modelled,
        .priority = JobPriority::low,
-       .lane = camera.config.name},
+       .lane = camera.reader->config().name},
       [picture = taken.picture, encoder = camera.stream.encoder(), rung = camera.stream.rung(), stripe,
        at = now()]() -> Result<perception::StripeEncoder::Coded> {
         const auto pixels = pixels_of(*picture, rung.width, rung.height);
@@ -227,7 +182,7 @@ void CameraPart::code(Camera& camera, const Taken& taken) {
           return refuse(camera, result.error());
         }
         std::optional<Pose3> T_map_camera;
-        if (taken.T_map_base) T_map_camera = *taken.T_map_base * camera.config.mounting.pose();
+        if (taken.T_map_base) T_map_camera = *taken.T_map_base * camera.reader->config().mounting.pose();
         camera.stream.coded(std::move(*result), taken.picture->stamp, T_map_camera, taken.exposed,
                             pacer_.piece_bytes(), now());
         send(now());
@@ -239,7 +194,7 @@ void CameraPart::shoot(Camera& camera, const Taken& taken) {
       {.name = "camera shot",
        .modelled = 2 * params_.modelled,
        .priority = JobPriority::low,
-       .lane = camera.config.name + " shot"},
+       .lane = camera.reader->config().name + " shot"},
       [picture = taken.picture]() -> Result<std::vector<std::uint8_t>> { return jpeg_of(*picture); },
       [this, &camera, taken](Result<std::vector<std::uint8_t>> jpeg) {
         const auto wanted = std::exchange(camera.shooting, {});
@@ -249,8 +204,8 @@ void CameraPart::shoot(Camera& camera, const Taken& taken) {
         for (const auto& [station, number] : wanted) {
           if (fresh_.size() + shots_.size() >= kMaxShots) break;
           camera.stream.took_shot(station, number);
-          fresh_.push_back(
-              {station, number, camera.config.name, taken.picture->stamp, age, taken.T_map_base, *jpeg});
+          fresh_.push_back({station, number, camera.reader->config().name, taken.picture->stamp, age,
+                            taken.T_map_base, *jpeg});
         }
       });
 }
@@ -259,9 +214,9 @@ void CameraPart::refuse(const Camera& camera, const Error& error) {
   const bool own = error.reason == Reason::queue_full || error.reason == Reason::no_answer ||
                    error.reason == Reason::cancelled;
   if (own)  // Of this computer, not of the driver.
-    log().warn("camera " + camera.config.name + ": " + error.text);
+    log().warn("camera " + camera.reader->config().name + ": " + error.text);
   else
-    report(camera, error, "sensor_refused");
+    camera.reader->report(error, "sensor_refused");
 }
 
 void CameraPart::locate(const Camera& camera, const DriverPicture& picture,
@@ -271,19 +226,13 @@ void CameraPart::locate(const Camera& camera, const DriverPicture& picture,
        [this, &camera, received, done = std::move(done)](const Result<PlaceThen>& place) {
          if (!place) return done(std::nullopt, received);
          if (place->foreign_clock)
-           report(
-               camera,
+           camera.reader->report(
                {Reason::out_of_range,
                 "its stamps are far from those of the odometry: pictures get the pose and the age of their "
                 "arrival; are both clocks synchronised?"},
                "camera_clock");
          done(place->T_map_base, now() - place->age);
        });
-}
-
-void CameraPart::report(const Camera& camera, const Error& cause, const char* code) {
-  fault_({camera.topic + "/image_raw", code, Severity::warning,
-          Error{cause.reason, "camera " + camera.config.name + ": " + cause.text}});
 }
 
 }  // namespace adit::agent

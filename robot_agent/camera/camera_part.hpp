@@ -36,8 +36,6 @@ struct CameraEnds {
 /// Drivers' topics are read only then, and pictures are decoded and coded as compute work.
 class CameraPart : public Component {
  public:
-  static constexpr Duration kSilent{3s};  ///< A camera whose driver sent nothing for so long is reported.
-
   CameraPart(CameraParams params, Executor& strand, Log log, const CameraEnds& ends, CameraService& service,
              const PlaceService& place, std::function<void(const InputFault&)> fault);
   ~CameraPart() override;
@@ -58,7 +56,6 @@ class CameraPart : public Component {
   CameraAnswer take(const CameraOrder& order);
   /// Opens and closes the drivers' topics as they are needed, and begins or ends the ticks.
   void update();
-  void open(Camera& camera);
   void tick();
   void send(Time at);
   bool needs_live(const Camera& camera) const;
@@ -72,7 +69,6 @@ class CameraPart : public Component {
   /// time by this strand's clock.
   void locate(const Camera& camera, const DriverPicture& picture,
               std::function<void(const std::optional<Pose3>& T_map_base, Time exposed)> done);
-  void report(const Camera& camera, const Error& cause, const char* code);
 
   CameraParams params_;
   CameraEnds ends_;

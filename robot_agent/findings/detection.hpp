@@ -4,8 +4,13 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "core/findings/photo.hpp"
+#include "core/time/time.hpp"
+#include "perception/objects/object_detector.hpp"
 
 namespace adit::agent {
 
@@ -18,6 +23,8 @@ struct DetectionParams {
   int sightings{3};  ///< Messages with an object before it is a finding, [1, 100].
   std::map<std::string, std::uint8_t> importance{};  ///< By kind; 0: the kind is ignored.
   std::uint8_t default_importance{5};                ///< Of other kinds.
+  double same{1.0};    ///< Objects of one kind without ids that are nearer to each other are one, m.
+  Duration lapse{3s};  ///< Sightings that are farther apart do not confirm each other.
 
   std::uint8_t importance_of(const std::string& kind) const {
     const auto known = importance.find(kind);
@@ -43,7 +50,16 @@ struct Detection {
   std::string text{};    ///< For operators; empty: the score is its text.
   Eigen::Vector3d position{0, 0, 0};  ///< In `frame`, m.
   std::string frame{};
-  std::uint64_t stamp{};  ///< The driver's clock, ns; 0: it has none.
+  std::uint64_t stamp{};                           ///< The driver's clock, ns; 0: it has none.
+  double sigma{};                                  ///< Standard deviation of its place, m; 0: unknown.
+  std::shared_ptr<const findings::Photo> photo{};  ///< Null: there is none.
+};
+
+/// The key `objects` of a robot's file: objects that the agent itself detects in pictures of its cameras.
+struct ObjectsParams {
+  perception::DetectorParams detector{};
+  Duration period{1s};  ///< Between two pictures of all cameras, [1, 60] s.
+  DetectionParams report{.topics = {}, .sightings = 2, .same = 2.0};
 };
 
 /// The kind of a class: its first 32 bytes, with _ for what is neither letter, digit, dot nor dash. `stairs`

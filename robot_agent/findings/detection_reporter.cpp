@@ -5,6 +5,9 @@
 #include <array>
 #include <cstdio>
 #include <string_view>
+#include <utility>
+
+#include "core/findings/object_data.hpp"
 
 namespace adit::agent {
 namespace {
@@ -13,9 +16,12 @@ constexpr double kLeastWeight = 0.2;  // Of a sighting in the mean: an object ma
 
 constexpr std::string_view kScore = "score ";  // Begins a text that says nothing else.
 
-std::string score_text(double score) {
-  std::array<char, 24> text{};
-  std::snprintf(text.data(), text.size(), "%.2f", score);
+std::string score_text(double score, double sigma) {
+  std::array<char, 48> text{};
+  if (sigma > 0.0)
+    std::snprintf(text.data(), text.size(), "%.2f, sigma %.1f m", score, sigma);
+  else
+    std::snprintf(text.data(), text.size(), "%.2f", score);
   return std::string(kScore) + text.data();
 }
 
@@ -28,7 +34,7 @@ Eigen::Vector3d position_of(const findings::Finding& finding) {
 DetectionReporter::Track& DetectionReporter::track_of(const Detection& detection,
                                                       const Eigen::Vector3d& place, Time now) {
   auto found = tracks_.end();
-  double nearest = kSame;
+  double nearest = params_.same;
   for (auto at = tracks_.begin(); at != tracks_.end(); ++at) {
     if (at->kind != detection.kind || at->id != detection.id) continue;
     const double distance = (at->place - place).norm();
@@ -60,11 +66,14 @@ Result<void> DetectionReporter::take(const Detection& detection, const Eigen::Ve
                                      std::uint64_t message, Time now) {
   Track& track = track_of(detection, place, now);
   if (track.sightings > 0 && track.message == message) return {};  // Two parts of one object.
-  if (track.finding == 0 && now - track.seen > kLapse) track.sightings = 0;
+  if (track.finding == 0 && now - track.seen > params_.lapse) track.sightings = 0;
   track.message = message;
   track.seen = now;
   ++track.sightings;
+  if (detection.photo && detection.score > track.score) track.photo = detection.photo;
   track.score = std::max(track.score, detection.score);
+  if (detection.sigma > 0.0 && (track.sigma <= 0.0 || detection.sigma < track.sigma))
+    track.sigma = detection.sigma;
   if (!detection.text.empty()) track.text = detection.text;
   track.place += (place - track.place) * std::max(1.0 / track.sightings, kLeastWeight);
   if (track.sightings < params_.sightings || now < track.retry) return {};
@@ -92,7 +101,9 @@ Result<void> DetectionReporter::report(Track& track, std::uint8_t importance, Ti
     if (!new_findings_.take(now))
       return {Reason::queue_full, "more than " + std::to_string(ReportRate::kBurst) +
                                       " new objects at once and one a second: '" + track.kind + "' waits"};
-    const auto taken = findings_.report(finding_of(track, importance, now));
+    findings::Finding finding = finding_of(track, importance, now);
+    finding.photo = store_photo(track, importance);
+    const auto taken = findings_.report(std::move(finding));
     if (!taken) return taken.error();
     track.finding = *taken;
     note();
@@ -105,8 +116,9 @@ Result<void> DetectionReporter::report(Track& track, std::uint8_t importance, Ti
   // What others reported of it stays: a name, a photo, or what another program knows.
   const findings::Finding& before = findings_.finding_store().all().at(findings_.key(track.finding));
   changed.importance = std::max(changed.importance, before.importance);
-  changed.data = before.data;
-  changed.photo = before.photo;
+  if (changed.data.empty() || !findings::read_object(before)) changed.data = before.data;
+  changed.photo = store_photo(track, importance);
+  if (!changed.photo) changed.photo = before.photo;
   if (track.text.empty() && !before.text.starts_with(kScore)) changed.text = before.text;
   const auto updated = findings_.update(std::move(changed));
   if (updated) note();
@@ -114,7 +126,7 @@ Result<void> DetectionReporter::report(Track& track, std::uint8_t importance, Ti
 }
 
 std::uint64_t DetectionReporter::known(const Track& track, Time now) const {
-  double nearest = kSame;
+  double nearest = params_.same;
   std::uint64_t id = 0;
   for (const auto& [key, finding] : findings_.finding_store().all()) {
     if (key.robot != robot_ || finding.kind != track.kind) continue;
@@ -137,7 +149,14 @@ findings::Finding DetectionReporter::finding_of(const Track& track, std::uint8_t
           .importance = importance,
           .position = {track.place.x(), track.place.y(), track.place.z()},
           .stamp = to_stamp(now),
-          .text = track.text.empty() ? score_text(track.score) : track.text};
+          .text = track.text.empty() ? score_text(track.score, track.sigma) : track.text,
+          .data = track.sigma > 0.0 ? findings::encode_object({track.sigma, track.score}) : store::Bytes{}};
+}
+
+std::optional<findings::PhotoRef> DetectionReporter::store_photo(Track& track,
+                                                                 std::uint8_t importance) const {
+  const auto photo = std::exchange(track.photo, nullptr);
+  return photo && store_ ? store_(*photo, importance) : std::nullopt;
 }
 
 }  // namespace adit::agent

@@ -20,6 +20,7 @@
 #include "core/record/flight_recorder.hpp"
 #include "core/store/file_disk.hpp"
 #include "core/wire/link_file.hpp"
+#include "perception/vision/vision_detector.hpp"
 #include "robot_agent/agent.hpp"
 #include "robot_agent/common/console_answer.hpp"
 #include "robot_agent/program/check.hpp"
@@ -177,6 +178,7 @@ int run_agent(const RobotConfig& config, const Options& options) {
        .on_error = [log = *log, name = config.name](const std::string& text) { Log(log, name).warn(text); }});
 
   AgentParams params = agent_params(config);
+  params.make_detector = perception::make_vision_detector;
   // A child that its parent restarted goes on from where it was.
   params.start_given = !options.pose.empty() && (!options.reports || options.placed);
   params.seed = drawn_seed();

@@ -121,6 +121,36 @@ void read_detections(const config::Node& node, DetectionParams& c) {
   read_importance(detections, c.importance, &c.default_importance);
 }
 
+void read_objects(const config::Node& node, const std::string& beside, RobotConfig& c) {
+  const auto objects = node.child_if("objects");
+  if (!objects.present()) return;
+  ObjectsParams out;
+  perception::DetectorParams& detector = out.detector;
+  // A missing file stays as it was written: the agent starts and reports it.
+  const auto path = [&](const char* key) {
+    const std::string given = objects.text(key, "");
+    const auto found = config::find_file(given, beside);
+    return given.empty() || !found ? given : std::filesystem::absolute(*found).lexically_normal().string();
+  };
+  detector.model = path("model");
+  detector.labels = path("labels");
+  if (detector.model.empty() != detector.labels.empty())
+    objects.fail(Reason::missing_key,
+                 "a model needs labels, a file with one class a line, and labels a model");
+  detector.min_score = objects.number("min_score", config::within(0.0, 1.0), detector.min_score);
+  detector.mean = objects.number("mean", config::within(0.0, 255.0), detector.mean);
+  detector.scale = objects.number("scale", config::within(1e-6, 10.0), detector.scale);
+  out.period = from_seconds(objects.number("period", config::within(1.0, 60.0), seconds(out.period)));
+  out.report.sightings = static_cast<int>(objects.integer("sightings", 1, 100, out.report.sightings));
+  read_importance(objects, out.report.importance, &out.report.default_importance);
+  if (c.platform.cameras.empty())
+    objects.fail(Reason::bad_argument, "objects: this platform has no camera in `sensors`");
+  // Each camera has its turn: sightings of one object come once a round.
+  const auto cameras = std::max<std::size_t>(1, c.platform.cameras.size());
+  out.report.lapse = std::max<Duration>(out.report.lapse, 3 * static_cast<int>(cameras) * out.period);
+  c.objects = std::move(out);
+}
+
 void read_reports(const config::Node& node, ReportParams& c) {
   const auto reports = node.child_if("reports");
   if (!reports.present()) return;
@@ -187,6 +217,7 @@ void read_robot_keys(const config::Node& node, const std::string& file, RobotCon
     c.perception = static_cast<PerceptionLevel>(node.choice("perception", kPerceptionWords));
   if (const auto map = node.child_if("map"); map.present()) c.carry_maps = map.flag("carry", false);
   read_detections(node, c.detections);
+  read_objects(node, file, c);
   read_reports(node, c.reports);
   if (node.has("start_height")) c.start_height = node.number("start_height", config::within(-1e5, 1e5));
   c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));
@@ -214,6 +245,7 @@ AgentParams agent_params(const RobotConfig& config) {
   params.perception = config.perception;
   params.carry_maps = config.carry_maps;
   params.detections = config.detections;
+  params.objects = config.objects;
   params.reports = config.reports;
   params.resume_after_restart = config.resume_after_restart;
   return params;

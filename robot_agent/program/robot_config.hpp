@@ -43,7 +43,8 @@ struct RobotConfig {
   bool carry_maps{false};  ///< `map: {carry: true}`
   DetectionParams detections{};
   ReportParams reports{};
-  Duration lock_lease{300s};  ///< 0: never
+  std::optional<ObjectsParams> objects{};  ///< Nothing: without the key.
+  Duration lock_lease{300s};               ///< 0: never
   std::string tree{"trees/robot.xml"};
   std::string state{};  ///< Folder of the state that survives a restart; empty: the default folder; "none":
                         ///< no state is stored.
@@ -60,7 +61,7 @@ struct RobotConfig {
 std::string state_folder(const RobotConfig& config);
 
 /// Reads the keys that a robot's file and a scenario have in common: cmd_vel, lock_lease,
-/// perception, map, detections, reports, start_height, tree, on_link_loss, link_loss_after, battery,
+/// perception, map, detections, reports, objects, start_height, tree, on_link_loss, link_loss_after, battery,
 /// after_restart. A missing key leaves `config` as it is; a wrong one is noted at `node`. The tree is
 /// searched first in the folder of `file`, and becomes an absolute path.
 void read_robot_keys(const config::Node& node, const std::string& file, RobotConfig& config);

@@ -6,6 +6,7 @@
 
 #include "core/config/node.hpp"
 #include "core/exec/virtual_runtime.hpp"
+#include "core/findings/object_data.hpp"
 #include "robot_agent/agent.hpp"
 #include "robot_agent/findings/detection_messages.hpp"
 #include "robot_agent/findings/detection_reporter.hpp"
@@ -276,6 +277,44 @@ TEST_F(DetectionReporterTest, AWithdrawnFindingComesBackWhenItIsSeen) {
   for (int n = 0; n < 50; ++n) see({2.0});
   EXPECT_EQ(places().size(), 1U);
   EXPECT_FALSE(source_.finding_store().all().begin()->second.withdrawn);
+}
+
+TEST_F(DetectionReporterTest, TheAgentsOwnDetectorAddsSigmaAndTheBestPhoto) {
+  std::vector<std::uint64_t> stored;
+  ObjectsParams params;
+  reporter_.emplace(
+      params.report, "r1", source_,
+      [&stored](const findings::Photo& photo, std::uint8_t) -> std::optional<findings::PhotoRef> {
+        stored.push_back(photo.hash);
+        return findings::ref_of(photo);
+      });
+  const auto sight = [&](double x, double score, double sigma, std::uint64_t photo) {
+    now_ += 1s;
+    const Detection detection{.source = "camera front",
+                              .kind = "person",
+                              .score = score,
+                              .sigma = sigma,
+                              .photo = std::make_shared<findings::Photo>(findings::Photo{
+                                  .picture = store::Bytes(9), .thumbnail = store::Bytes(3), .hash = photo})};
+    last_ = reporter_->take(detection, {x, 0, 0}, ++message_, now_);
+    source_.tick(now_);
+  };
+  sight(5.0, 0.7, 0.9, 11);
+  EXPECT_THAT(places(), IsEmpty());
+  sight(6.5, 0.8, 0.4, 12);
+  ASSERT_EQ(places().size(), 1U) << "within 2 m it is one object";
+  EXPECT_NEAR(places()[0], 5.75, 1e-9);
+  EXPECT_THAT(stored, ElementsAre(12U)) << "only the best photo is stored";
+  const findings::Finding& found = source_.finding_store().all().begin()->second;
+  EXPECT_EQ(found.text, "score 0.80, sigma 0.4 m");
+  EXPECT_EQ(found.photo->content, 12U);
+  ASSERT_TRUE(findings::read_object(found));
+  EXPECT_NEAR(findings::read_object(found)->sigma, 0.4, 0.005);
+  EXPECT_NEAR(findings::read_object(found)->score, 0.8, 0.003);
+  sight(5.75, 0.5, 0.4, 13);
+  sight(5.75, 0.95, 0.4, 14);
+  sight(5.75, 0.95, 0.4, 15);
+  EXPECT_THAT(stored, ElementsAre(12U, 14U)) << "another one only where it is surer";
 }
 
 TEST_F(DetectionReporterTest, AFloodIsBounded) {

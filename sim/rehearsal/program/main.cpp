@@ -7,6 +7,8 @@
 
 #include "core/config/search.hpp"
 #include "core/config/usage.hpp"
+#include "perception/vision/vision_detector.hpp"
+#include "robot_agent/agent.hpp"
 #include "sim/defects/defect.hpp"
 #include "sim/rehearsal/program/interrupt.hpp"
 #include "sim/rehearsal/program/report_error.hpp"
@@ -196,7 +198,8 @@ int main(int argc, char** argv) {
   if (!scenario) return report_error("rehearse", scenario.error());
   auto world = make_world(scenario->world);
   if (!world) return report_error("rehearse", world.error());
-  auto factory = make_agent_factory(defect);
+  auto factory = make_agent_factory(
+      defect, [](agent::AgentParams& agent) { agent.make_detector = perception::make_vision_detector; });
   if (!factory) return report_error("rehearse", factory.error());
   if (chaos) add_chaos(*scenario);
   if (!perception.empty()) set_perception(*scenario, perception);
