@@ -50,9 +50,7 @@ double smooth_noise(std::uint32_t x, std::uint32_t y, std::uint32_t cell) {
          (corner(u, v + 1) * (1 - a) + corner(u + 1, v + 1) * a) * b;
 }
 
-}  // namespace
-
-std::vector<Picture> frames_of(const std::string& folder, std::size_t most) {
+std::vector<std::filesystem::path> paths_of(const std::string& folder, std::size_t most) {
   std::vector<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (const auto kind = entry.path().extension(); kind == ".jpg" || kind == ".jpeg" || kind == ".ppm")
@@ -60,8 +58,20 @@ std::vector<Picture> frames_of(const std::string& folder, std::size_t most) {
   std::sort(paths.begin(), paths.end());
   paths.resize(std::min(paths.size(), most));
   if (paths.empty()) throw std::runtime_error(folder + " has no .jpg, .jpeg and .ppm");
+  return paths;
+}
+
+}  // namespace
+
+std::vector<std::string> frame_names(const std::string& folder, std::size_t most) {
+  std::vector<std::string> out;
+  for (const auto& path : paths_of(folder, most)) out.push_back(path.filename().string());
+  return out;
+}
+
+std::vector<Picture> frames_of(const std::string& folder, std::size_t most) {
   std::vector<Picture> out;
-  for (const auto& path : paths) {
+  for (const auto& path : paths_of(folder, most)) {
     if (path.extension() == ".ppm") {
       out.push_back(ppm(path));
       continue;

@@ -75,6 +75,8 @@ Result<std::vector<std::string>> read_labels(const std::string& path) {
     out.push_back(line);
   }
   while (!out.empty() && out.back().empty()) out.pop_back();
+  // SSD's files of labels begin with the class of nothing, which read_boxes() knows without a label.
+  if (!out.empty() && (out.front() == "BACKGROUND" || out.front() == "background")) out.erase(out.begin());
   if (out.empty() || std::ranges::find(out, "") != out.end())
     return Error{Reason::malformed,
                  "the labels " + path + ": expected one class a line, without empty lines"};
