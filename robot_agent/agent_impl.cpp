@@ -282,13 +282,18 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
                                         },
                                         [&e] { return e.map ? e.map->pose_changes() : std::uint64_t{0}; }})
           : nullptr;
-  if (has(objects))
+  if (has(objects)) {
+    DetectionParams report = params.objects->report;
+    // Each camera has its turn: sightings of one object come once a round.
+    const auto round = static_cast<int>(params.platform.cameras.size()) * params.objects->period;
+    report.lapse = std::max<Duration>(report.lapse, 3 * round);
     e.objects = std::make_unique<DetectionReporter>(
-        params.objects->report, params.name, *e.findings,
+        std::move(report), params.name, *e.findings,
         [&e](const findings::Photo& photo, std::uint8_t importance) -> std::optional<findings::PhotoRef> {
           if (!e.photos->put(photo, importance)) return std::nullopt;
           return findings::ref_of(photo);
         });
+  }
   if (has(cameras)) e.shots = std::make_unique<ShotSource>();
   for (Unit* unit : {&planner, &router, &sensors, &map, &stairs, &cameras, &objects})
     if (has(*unit))

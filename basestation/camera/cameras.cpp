@@ -42,6 +42,8 @@ Result<std::string> Cameras::named(const Robot& robot, const std::string& camera
   const RobotView* view = fleet_.robot(robot);
   if (view == nullptr) return Error{Reason::unknown_robot, robot + " has not been heard"};
   const std::vector<std::string> all = cameras_of(view->sensors);
+  if (all.empty() && view->modes.empty())  // Both come with its capabilities.
+    return Error{Reason::no_answer, robot + " has not described itself yet; try again in a second"};
   if (all.empty()) return Error{Reason::not_supported, robot + " has no camera"};
   if (camera.empty()) return all.front();
   if (std::ranges::find(all, camera) != all.end()) return camera;

@@ -29,6 +29,7 @@ struct NoSink : CommandSink {
   void look_at(const std::optional<station::LookedAt>&) override {}
   void execute(const std::string&, Done) override {}
   void query(const std::string&, Done) override {}
+  void camera(const station::CameraRequest&, Done) override {}
   void photo(const std::string&, findings::PhotoPart, Done) override {}
   void stop(const std::vector<std::string>&, Done) override {}
   void start_station() override {}

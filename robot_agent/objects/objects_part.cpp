@@ -11,10 +11,11 @@ namespace adit::agent {
 namespace {
 
 constexpr Duration kTick = 100ms;
-// Stamps of a picture and a scan that are farther apart are of two clocks.
-constexpr std::int64_t kOneClock = 1'000'000'000;  // ns
-constexpr std::uint64_t kNearScan = 250'000'000;   // From the exposure to a scan whose pose is used, ns.
-constexpr double kMargin = 0.4;                    // Around an object, of the sides of its box.
+// Stamps of a picture and a scan that are farther apart are of two clocks, ns. Pictures that are late by
+// less have no scan and are refused.
+constexpr std::int64_t kOneClock = 5'000'000'000;
+constexpr std::uint64_t kNearScan = 250'000'000;  // From the exposure to a scan whose pose is used, ns.
+constexpr double kMargin = 0.4;                   // Around an object, of the sides of its box.
 constexpr int kPhotoQuality = 85;
 
 /// The time of a scan and of a picture, ns, by the clock that both have.
@@ -182,6 +183,16 @@ Result<Pose3> ObjectsPart::pose_at(const DriverPicture& picture) const {
   return nearest->scan->located;
 }
 
+std::vector<std::shared_ptr<const ObjectsJob>> ObjectsPart::scans_near(const DriverPicture& picture) const {
+  std::vector<std::shared_ptr<const ObjectsJob>> out(scans_.begin(), scans_.end());
+  std::ranges::stable_sort(out, {}, [&picture](const auto& job) {
+    const Instants at = instants(*job, picture);
+    return at.scan > at.picture ? at.scan - at.picture : at.picture - at.scan;
+  });
+  if (out.size() > params_.used_scans) out.resize(params_.used_scans);
+  return out;
+}
+
 void ObjectsPart::search_when_located() {
   if (!pending_ || searching_) return;
   if (!has_scan_after(*pending_->picture) && now() - pending_->picture->received < kPatience) return;
@@ -203,8 +214,8 @@ void ObjectsPart::search(const Pending& pending, const Pose3& T_odom_base) {
        .priority = JobPriority::low,
        .lane = "objects"},
       [picture = pending.picture, detector = detector_, T_odom_camera, field_of_view = config.field_of_view,
-       name = config.name, scans = std::vector(scans_.begin(), scans_.end())](
-          const std::stop_token& stop) -> Result<std::vector<SeenObject>> {
+       name = config.name,
+       scans = scans_near(*pending.picture)](const std::stop_token& stop) -> Result<std::vector<SeenObject>> {
         const std::uint32_t side = detector->picture_side();
         const auto pixels = pixels_of(*picture, side, side);
         if (!pixels) return pixels.error();

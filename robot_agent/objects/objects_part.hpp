@@ -23,8 +23,9 @@ struct ObjectsPartParams {
   perception::DetectorParams detector{};
   perception::DetectorFactory make{};  ///< Empty: this program has no detector.
   Duration period{1s};                 ///< Between two pictures of all cameras, >= 1 s.
-  Duration window{600ms};              ///< Scans are accumulated for so long.
-  std::size_t max_scans{6};            ///< In the window.
+  Duration window{2s};                 ///< Scans are stored for so long: large pictures come late.
+  std::size_t max_scans{24};           ///< In the window.
+  std::size_t used_scans{6};           ///< Those nearest to the exposure, with which objects are placed.
   Duration modelled{150ms};            ///< Duration of a search in rehearsal.
 };
 
@@ -59,6 +60,8 @@ class ObjectsPart : public Component {
   /// The pose of the body at the exposure. Error: out_of_range, when no scan is near that time.
   Result<Pose3> pose_at(const DriverPicture& picture) const;
   bool has_scan_after(const DriverPicture& picture) const;
+  /// The scans nearest to the exposure.
+  std::vector<std::shared_ptr<const ObjectsJob>> scans_near(const DriverPicture& picture) const;
 
   ObjectsPartParams params_;
   wire::ComponentIo io_;

@@ -143,11 +143,6 @@ void read_objects(const config::Node& node, const std::string& beside, RobotConf
   out.period = from_seconds(objects.number("period", config::within(1.0, 60.0), seconds(out.period)));
   out.report.sightings = static_cast<int>(objects.integer("sightings", 1, 100, out.report.sightings));
   read_importance(objects, out.report.importance, &out.report.default_importance);
-  if (c.platform.cameras.empty())
-    objects.fail(Reason::bad_argument, "objects: this platform has no camera in `sensors`");
-  // Each camera has its turn: sightings of one object come once a round.
-  const auto cameras = std::max<std::size_t>(1, c.platform.cameras.size());
-  out.report.lapse = std::max<Duration>(out.report.lapse, 3 * static_cast<int>(cameras) * out.period);
   c.objects = std::move(out);
 }
 
@@ -275,6 +270,9 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   auto loaded = config::load_platform(platform, file);
   if (!loaded) return loaded.error();
   c.platform = *loaded;
+  if (c.objects && c.platform.cameras.empty())
+    return Error{Reason::bad_argument,
+                 file + ": objects: the platform " + platform + " has no camera in `sensors`"};
   c.radio.name = c.name;
   return c;
 }

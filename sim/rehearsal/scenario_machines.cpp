@@ -99,6 +99,8 @@ RobotSpec read_spec(const Node& robot, const Scenario& scenario, Duration lock_l
     spec.settings.start_height.reset();  // The file's belongs to the file's pose.
   }
   agent::read_robot_keys(robot, scenario.file.string(), spec.settings);
+  if (spec.settings.objects && spec.settings.platform.cameras.empty())
+    robot.fail(Reason::bad_argument, "objects: the robot has no camera");
   read_battery(robot, spec);
   spec.settings.name = spec.id;
   spec.settings.start = spec.pose;

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "adit/camera.h"
+#include "adit/robot.h"
 #include "basestation/model/camera_bytes.hpp"
 #include "basestation/station/station.hpp"
 #include "perception/camera/picture.hpp"
@@ -293,6 +294,19 @@ TEST_F(Cameras, GoOnAfterARestartOfTheComponent) {
   EXPECT_TRUE(bench->agent().inject("cameras", ComponentFault::crash).ok());
   bench->run(3s);
   EXPECT_FALSE(watch(4s).empty());
+  EXPECT_THAT(execute("health r1").text, testing::ContainsRegex("cameras +up +auto"));
+}
+
+TEST_F(Cameras, ARobotThatHasNotDescribedItselfIsNotSaidToHaveNone) {
+  begin(kWifi);
+  radio::RobotState state;
+  state.robot("r7");
+  auto other = bench->network().join(77, "r7");
+  auto states = wire::Writer<radio::RobotState>::make(*other, wire::topics::kRobotState).value();
+  bench->run(1s);  // Until writer and reader match.
+  ASSERT_TRUE(states.write(state).ok());
+  bench->run(500ms);
+  EXPECT_THAT(execute("camera r7 on").error, HasSubstr("has not described itself yet"));
 }
 
 }  // namespace

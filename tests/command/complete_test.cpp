@@ -30,7 +30,7 @@ TEST(Complete, CommandsThenRobotsThenArguments) {
   EXPECT_THAT(complete({"yield", "all", ""}, kRobots), ElementsAre("off"));
   EXPECT_THAT(complete({"release", ""}, kRobots), ElementsAre("r1", "r2"));
   EXPECT_THAT(complete({"policy", "r1", ""}, kRobots),
-              ElementsAre("planner", "router", "sensors", "map", "stairs"));
+              ElementsAre("planner", "router", "sensors", "map", "stairs", "cameras", "objects"));
   EXPECT_THAT(complete({"policy", "r1", "planner", ""}, kRobots), ElementsAre("auto", "manual"));
   EXPECT_THAT(complete({"help", ""}, kRobots), Contains("goto"));
   EXPECT_THAT(complete({"completion", ""}, kRobots), ElementsAre("bash", "zsh", "fish"));
