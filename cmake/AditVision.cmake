@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Object detection on robots with cameras, by OpenCV. OpenCV's own CMake files come with all of it, VTK too; the four
 # libraries are found without them.
-#   ADIT_VISION  ON when found, unless set; without it robots refuse the key `objects`
+#   ADIT_VISION  AUTO (where OpenCV is installed), ON or OFF; without it robots report the key `objects` as refused
+# Sets ADIT_HAS_VISION.
 find_path(ADIT_OPENCV_INCLUDE opencv2/dnn.hpp PATH_SUFFIXES opencv4)
 find_path(ADIT_OPENCV_HOG opencv2/objdetect.hpp PATH_SUFFIXES opencv4)
 mark_as_advanced(ADIT_OPENCV_INCLUDE ADIT_OPENCV_HOG)
@@ -16,7 +17,14 @@ endforeach()
 if(NOT ADIT_OPENCV_INCLUDE OR NOT ADIT_OPENCV_HOG)
   set(adit_opencv_found OFF)
 endif()
-option(ADIT_VISION "Detect objects in pictures with OpenCV" ${adit_opencv_found})
-if(ADIT_VISION AND NOT adit_opencv_found)
+set(ADIT_VISION AUTO CACHE STRING "Detect objects in pictures: AUTO (where OpenCV is installed), ON or OFF")
+set_property(CACHE ADIT_VISION PROPERTY STRINGS AUTO ON OFF)
+if(ADIT_VISION STREQUAL "AUTO")
+  set(adit_vision ${adit_opencv_found})
+else()
+  set(adit_vision ${ADIT_VISION})
+endif()
+if(adit_vision AND NOT adit_opencv_found)
   message(FATAL_ERROR "ADIT_VISION needs libopencv-dnn-dev and libopencv-objdetect-dev (./run setup)")
 endif()
+set(ADIT_HAS_VISION ${adit_vision} CACHE INTERNAL "Objects in pictures are detected")

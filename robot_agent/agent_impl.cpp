@@ -133,12 +133,13 @@ UnitParams Agent::Impl::cameras_unit() {
 }
 
 UnitParams Agent::Impl::objects_unit() {
-  UnitParams unit{.name = "objects", .dedicated = true};
+  UnitParams unit{.name = "objects"};  // Its work takes seconds: it goes to the pool, with its watchdog.
   unit.make = [this](Executor& strand) -> std::unique_ptr<Component> {
     return std::make_unique<ObjectsPart>(ObjectsPartParams{.cameras = params.platform.cameras,
                                                            .detector = params.objects->detector,
                                                            .make = params.make_detector,
-                                                           .period = params.objects->period},
+                                                           .period = params.objects->period,
+                                                           .instance = ++context->object_parts},
                                          strand, Log(params.log, params.name), *objects_io,
                                          context->objects_search,
                                          [&inputs = *context->inputs, &strand](const InputFault& fault) {

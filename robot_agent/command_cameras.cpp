@@ -34,6 +34,7 @@ void Agent::CommandComponent::seek_objects(const std::shared_ptr<const Scan>& sc
        [this](const Result<ObjectsStep>& step) {
          if (!step || step->picture == 0 || step->odom_epoch != frames_.odom_epoch()) return;
          for (const SeenObject& seen : step->objects) {
+           if (params_.objects->report.importance_of(kind_of(seen.kind)) == 0) continue;
            const Eigen::Vector3d place = frames_.map_frame().T_map_odom * seen.position;
            const Detection detection{.source = "camera " + seen.camera,
                                      .kind = kind_of(seen.kind),

@@ -88,6 +88,7 @@ struct Agent::Context {
   PlaceService place_then{"place of a picture", 16};
   std::unique_ptr<ShotSource> shots{};  ///< Null: this robot has no camera.
   StairsService stairs_search{"stairs", 2};
+  std::uint32_t object_parts{};     ///< Instances of the component `objects` so far; by itself only.
   std::uint32_t camera_parts{};     ///< Instances of the component `cameras` so far; by itself only.
   std::uint32_t stairs_searches{};  ///< Instances of the search so far; by the stairs component only.
   std::unique_ptr<StairsReporter> stairs{};  ///< Null: this robot seeks no staircases.

@@ -53,10 +53,13 @@ struct Row {
   bool object{};
 };
 
-bool is_same_object(const FoundItem& a, const FoundItem& b) {
-  if (a.withdrawn || b.withdrawn || a.kind != b.kind) return false;
+double distance(const FoundItem& a, const FoundItem& b) {
   const auto &p = a.position, &q = b.position;
-  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) <= kSameObject;
+  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+}
+
+bool is_same_object(const FoundItem& a, const FoundItem& b) {
+  return !a.withdrawn && !b.withdrawn && a.kind == b.kind && distance(a, b) <= kSameObject;
 }
 
 /// Adds an object to the row that stands for it.
@@ -81,10 +84,14 @@ std::vector<FoundItem> without_doubles(std::vector<Row> rows) {
   std::vector<Group> groups;
   std::set<const Row*> folded;
   for (Row* row : objects) {
-    const auto known = std::ranges::find_if(groups, [row](const Group& group) {
-      return !group.robots.contains(row->item.robot) && is_same_object(group.first->item, row->item);
-    });
-    if (known == groups.end()) {
+    Group* known = nullptr;
+    for (Group& group : groups) {
+      if (group.robots.contains(row->item.robot) || !is_same_object(group.first->item, row->item)) continue;
+      if (known == nullptr ||
+          distance(group.first->item, row->item) < distance(known->first->item, row->item))
+        known = &group;
+    }
+    if (known == nullptr) {
       groups.push_back({row, {row->item.robot}});
       continue;
     }

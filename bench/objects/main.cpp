@@ -79,7 +79,8 @@ int run(const Options& options) {
     if (options.draw.empty()) continue;
     for (const ObjectBox& box : *boxes) draw_box(picture, box);
     const auto jpeg = encode_jpeg(picture, 90);
-    std::ofstream(std::filesystem::path(options.draw) / names[i], std::ios::binary)
+    const auto name = std::filesystem::path(names[i]).stem().string() + "_boxes.jpg";
+    std::ofstream(std::filesystem::path(options.draw) / name, std::ios::binary)
         .write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
   }
   std::ranges::sort(times);

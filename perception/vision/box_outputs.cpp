@@ -81,9 +81,9 @@ void read_yolo8(std::span<const float> values, std::size_t labels, Collector& ou
 }
 
 /// [boxes, 7]: picture, class, score and corners.
-void read_ssd(std::span<const float> values, std::size_t labels, Collector& out) {
+void read_ssd(std::span<const float> values, std::size_t labels, bool background, Collector& out) {
   for (std::size_t at = 0; at + 7 <= values.size(); at += 7) {
-    const float label = values[at + 1];
+    const float label = values[at + 1] - (background ? 1.0f : 0.0f);
     if (label >= 0.0f && label < static_cast<float>(labels))
       out.add_shares(static_cast<std::size_t>(label), values[at + 2], values.subspan(at + 3, 4));
   }
@@ -120,7 +120,7 @@ float overlap(const RawBox& a, const RawBox& b) {
 }  // namespace
 
 Result<std::vector<RawBox>> read_boxes(std::span<const OutputTensor> outputs, std::size_t labels,
-                                       double width, double height, double min_score) {
+                                       bool background, double width, double height, double min_score) {
   Collector out(width, height, min_score);
   const Error refused{Reason::malformed, "it returns " + shapes(outputs) +
                                              ", neither boxes of a YOLO nor of an SSD network for " +
@@ -132,7 +132,7 @@ Result<std::vector<RawBox>> read_boxes(std::span<const OutputTensor> outputs, st
     const OutputTensor& only = outputs[0];
     const std::vector<int>& sides = only.sides;
     if (sides.size() == 4 && sides[0] == 1 && sides[1] == 1 && sides[3] == 7) {
-      read_ssd(only.values, labels, out);
+      read_ssd(only.values, labels, background, out);
     } else if (sides.size() == 3 && sides[0] == 1 && sides[2] == 5 + classes) {
       read_yolo5(only.values, labels, out);
     } else if (sides.size() == 3 && sides[0] == 1 && sides[1] == 4 + classes) {

@@ -26,10 +26,13 @@ struct RawBox {
 /// `min_score` are left out, and so are boxes without finite sides.
 ///
 /// @param labels  Number of classes, without the background.
+/// @param background  Class 0 of outputs [1, 1, boxes, 7] is the background. Of two outputs it is where there
+/// is one class
+///                    more than labels.
 /// @param width   Of the network's picture, pixels; also `height`.
 /// Error: malformed, when the outputs are of neither, or have another number of classes.
 Result<std::vector<RawBox>> read_boxes(std::span<const OutputTensor> outputs, std::size_t labels,
-                                       double width, double height, double min_score);
+                                       bool background, double width, double height, double min_score);
 
 /// Keeps, of boxes of one class that overlap by more than 45 % (intersection over union), the one with the
 /// highest score. At most `max` boxes, those with the highest scores first.

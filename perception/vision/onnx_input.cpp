@@ -117,7 +117,9 @@ Result<OnnxInput> read_onnx_input(Bytes model) {
     std::vector<std::uint64_t> sides;
     for (const Field& side : fields(first(first(first(input.bytes, 2), 1), 2), 1)) {
       const auto values = fields(side.bytes, 1);
-      sides.push_back(values.empty() ? 0 : values.front().value);
+      // Some exporters write an open side as -1.
+      const bool open = values.empty() || values.front().value >> 63 != 0;
+      sides.push_back(open ? 0 : values.front().value);
     }
     if (sides.size() != 4 || sides[0] > 1 || sides[1] != 3) {
       std::string shape;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <mutex>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
@@ -26,15 +27,21 @@ int quiet(int /*status*/, const char* /*function*/, const char* /*text*/, const 
   return 0;
 }
 
-/// Once in a process: pictures come one at a time, on a thread of the agent's own pool.
+/// Pictures come one at a time, on a thread of the agent's own pool.
 void set_up_opencv() {
-  cv::setNumThreads(1);
-  cv::redirectError(quiet);
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  static std::once_flag once;
+  std::call_once(once, [] {
+    cv::setNumThreads(1);
+    cv::redirectError(quiet);
+    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  });
 }
 
-Error failed(const cv::Exception& why, Reason reason) {
-  return {reason, "OpenCV: " + (why.err.empty() ? std::string(why.what()) : why.err)};
+/// OpenCV throws cv::Exception, and the standard library's exceptions where a model makes it allocate or
+/// index.
+Error failed(const std::exception& why, Reason reason) {
+  const auto* own = dynamic_cast<const cv::Exception*>(&why);
+  return {reason, "OpenCV: " + (own == nullptr || own->err.empty() ? std::string(why.what()) : own->err)};
 }
 
 /// The pixels, not copied; the matrix is only read.
@@ -63,10 +70,17 @@ Result<std::vector<std::uint8_t>> read_model(const std::string& path) {
   return bytes;
 }
 
-Result<std::vector<std::string>> read_labels(const std::string& path) {
+/// The classes of a network.
+struct Labels {
+  std::vector<std::string> names{};
+  bool background{};  ///< Class 0 of the network is none of them: the file begins with BACKGROUND.
+};
+
+Result<Labels> read_labels(const std::string& path) {
   std::ifstream in(path);
   if (!in) return Error{Reason::cannot_read, "the labels " + path + " cannot be read"};
-  std::vector<std::string> out;
+  Labels labels;
+  std::vector<std::string>& out = labels.names;
   for (std::string line; std::getline(in, line);) {
     while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
     if (line.size() > kMaxLabel || out.size() >= kMaxLabels)
@@ -75,18 +89,18 @@ Result<std::vector<std::string>> read_labels(const std::string& path) {
     out.push_back(line);
   }
   while (!out.empty() && out.back().empty()) out.pop_back();
-  // SSD's files of labels begin with the class of nothing, which read_boxes() knows without a label.
-  if (!out.empty() && (out.front() == "BACKGROUND" || out.front() == "background")) out.erase(out.begin());
+  labels.background = !out.empty() && (out.front() == "BACKGROUND" || out.front() == "background");
+  if (labels.background) out.erase(out.begin());
   if (out.empty() || std::ranges::find(out, "") != out.end())
     return Error{Reason::malformed,
                  "the labels " + path + ": expected one class a line, without empty lines"};
-  return out;
+  return labels;
 }
 
 /// A network in an ONNX file.
 class NetworkDetector final : public ObjectDetector {
  public:
-  NetworkDetector(DetectorParams params, cv::dnn::Net net, OnnxInput input, std::vector<std::string> labels)
+  NetworkDetector(DetectorParams params, cv::dnn::Net net, OnnxInput input, Labels labels)
       : params_(std::move(params)), net_(std::move(net)), input_(input), labels_(std::move(labels)) {
     net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
@@ -98,7 +112,7 @@ class NetworkDetector final : public ObjectDetector {
     if (!is_sound(picture)) return Error{Reason::internal, "a picture without pixels"};
     try {
       return detect_in(view_of(picture));
-    } catch (const cv::Exception& why) {
+    } catch (const std::exception& why) {
       return failed(why, Reason::internal);
     }
   }
@@ -131,13 +145,14 @@ class NetworkDetector final : public ObjectDetector {
         return Error{Reason::malformed, "it returns no tensors of floats"};
       outputs.push_back({{each.size.p, each.size.p + each.dims}, {each.ptr<float>(), each.total()}});
     }
-    auto raw = read_boxes(outputs, labels_.size(), width, height, params_.min_score);
+    auto raw =
+        read_boxes(outputs, labels_.names.size(), labels_.background, width, height, params_.min_score);
     if (!raw) return raw.error();
     std::vector<ObjectBox> out;
     for (const RawBox& box : without_overlaps(std::move(*raw), kMaxBoxes)) {
       const auto across = [&](double x) { return std::clamp((x - left) / inner.width, 0.0, 1.0); };
       const auto down = [&](double y) { return std::clamp((y - top) / inner.height, 0.0, 1.0); };
-      out.push_back({.kind = labels_[box.label],
+      out.push_back({.kind = labels_.names[box.label],
                      .score = box.score,
                      .left = across(box.left),
                      .top = down(box.top),
@@ -151,7 +166,7 @@ class NetworkDetector final : public ObjectDetector {
   DetectorParams params_;
   cv::dnn::Net net_;
   OnnxInput input_;
-  std::vector<std::string> labels_;
+  Labels labels_;
 };
 
 /// Upright people, by histograms of oriented gradients.
@@ -176,7 +191,7 @@ class PeopleDetector final : public ObjectDetector {
       }
       if (grey.cols < hog_.winSize.width || grey.rows < hog_.winSize.height) return std::vector<ObjectBox>{};
       hog_.detectMultiScale(grey, found, weights, 0.0, cv::Size(8, 8), cv::Size(8, 8), 1.05, 2.0);
-    } catch (const cv::Exception& why) {
+    } catch (const std::exception& why) {
       return failed(why, Reason::internal);
     }
     std::vector<ObjectBox> out;
@@ -228,7 +243,7 @@ Result<std::shared_ptr<ObjectDetector>> make_vision_detector(const DetectorParam
     grey.bytes.assign(std::size_t{3} * grey.width * grey.height, kGrey);
     if (const auto tried = detector->detect(grey); !tried) return about(tried.error());
     return std::shared_ptr<ObjectDetector>(std::move(detector));
-  } catch (const cv::Exception& why) {
+  } catch (const std::exception& why) {
     return about(failed(why, Reason::malformed));
   }
 }

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdio>
 #include <string_view>
-#include <utility>
 
 #include "core/findings/object_data.hpp"
 
@@ -66,7 +65,11 @@ Result<void> DetectionReporter::take(const Detection& detection, const Eigen::Ve
                                      std::uint64_t message, Time now) {
   Track& track = track_of(detection, place, now);
   if (track.sightings > 0 && track.message == message) return {};  // Two parts of one object.
-  if (track.finding == 0 && now - track.seen > params_.lapse) track.sightings = 0;
+  if (track.finding == 0 && now - track.seen > params_.lapse) {
+    track.sightings = 0;
+    track.score = track.sigma = 0.0;
+    track.photo.reset();
+  }
   track.message = message;
   track.seen = now;
   ++track.sightings;
@@ -106,6 +109,7 @@ Result<void> DetectionReporter::report(Track& track, std::uint8_t importance, Ti
     const auto taken = findings_.report(std::move(finding));
     if (!taken) return taken.error();
     track.finding = *taken;
+    track.photo.reset();
     note();
     return {};
   }
@@ -117,11 +121,15 @@ Result<void> DetectionReporter::report(Track& track, std::uint8_t importance, Ti
   const findings::Finding& before = findings_.finding_store().all().at(findings_.key(track.finding));
   changed.importance = std::max(changed.importance, before.importance);
   if (changed.data.empty() || !findings::read_object(before)) changed.data = before.data;
-  changed.photo = store_photo(track, importance);
-  if (!changed.photo) changed.photo = before.photo;
+  changed.photo = before.photo;
+  if (!before.photo || findings::read_object(before))
+    if (const auto photo = store_photo(track, importance)) changed.photo = photo;
   if (track.text.empty() && !before.text.starts_with(kScore)) changed.text = before.text;
   const auto updated = findings_.update(std::move(changed));
-  if (updated) note();
+  if (updated) {
+    track.photo.reset();
+    note();
+  }
   return updated;
 }
 
@@ -153,10 +161,9 @@ findings::Finding DetectionReporter::finding_of(const Track& track, std::uint8_t
           .data = track.sigma > 0.0 ? findings::encode_object({track.sigma, track.score}) : store::Bytes{}};
 }
 
-std::optional<findings::PhotoRef> DetectionReporter::store_photo(Track& track,
+std::optional<findings::PhotoRef> DetectionReporter::store_photo(const Track& track,
                                                                  std::uint8_t importance) const {
-  const auto photo = std::exchange(track.photo, nullptr);
-  return photo && store_ ? store_(*photo, importance) : std::nullopt;
+  return track.photo && store_ ? store_(*track.photo, importance) : std::nullopt;
 }
 
 }  // namespace adit::agent

@@ -67,7 +67,7 @@ class DetectionReporter {
   Result<void> report(Track& track, std::uint8_t importance, Time now);
   findings::Finding finding_of(const Track& track, std::uint8_t importance, Time now) const;
   /// Stores the photo of the track, if it has one.
-  std::optional<findings::PhotoRef> store_photo(Track& track, std::uint8_t importance) const;
+  std::optional<findings::PhotoRef> store_photo(const Track& track, std::uint8_t importance) const;
 
   DetectionParams params_;
   std::string robot_;

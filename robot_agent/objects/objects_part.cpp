@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "perception/objects/object_place.hpp"
@@ -11,6 +12,10 @@ namespace adit::agent {
 namespace {
 
 constexpr Duration kTick = 100ms;
+constexpr Duration kFresh = 1s;               // Age of the newest scan.
+constexpr Duration kRetry = 10s;              // After the detector could not be loaded for lack of time.
+constexpr std::size_t kPhotos = 4;            // Of one picture, those of the best scores.
+constexpr std::uint32_t kPhotoSource = 1600;  // Side of the picture that photos are cut from, pixels.
 // Stamps of a picture and a scan that are farther apart are of two clocks, ns. Pictures that are late by
 // less have no scan and are refused.
 constexpr std::int64_t kOneClock = 5'000'000'000;
@@ -27,6 +32,9 @@ Instants instants(const ObjectsJob& job, const DriverPicture& picture) {
   if (job.stamp != 0 && picture.stamp != 0 && std::abs(apart) <= kOneClock) return {job.stamp, picture.stamp};
   return {to_stamp(job.received), to_stamp(picture.received)};
 }
+
+/// Of this computer, and over soon.
+bool is_passing(Reason reason) { return reason == Reason::queue_full || reason == Reason::cancelled; }
 
 }  // namespace
 
@@ -80,16 +88,20 @@ ObjectsPart::ObjectsPart(ObjectsPartParams params, Executor& strand, Log log, wi
     readers_.push_back(std::make_unique<CameraReader>(
         params_.cameras[i],
         CameraReader::Outputs{
-            [this, i] {
-              return detector_ && !searching_ && !pending_ && i == turn_ &&
-                     (!last_ || now() - *last_ >= params_.period);
-            },
+            [this, i] { return wants_picture(i); },
             [this, i](std::shared_ptr<const DriverPicture> picture) { take(i, std::move(picture)); },
             [this](const std::function<void()>& work) { protect([&work] { work(); }); },
             [this](const InputFault& problem) { fault_(problem); }}));
 }
 
 ObjectsPart::~ObjectsPart() = default;
+
+bool ObjectsPart::wants_picture(std::size_t camera) const {
+  // Without scans, as before the robot knows where it is, nothing can be placed.
+  const bool scans = !scans_.empty() && now() - scans_.back()->received < kFresh;
+  return detector_ && !searching_ && !pending_ && scans && camera == turn_ &&
+         (!last_ || now() - *last_ >= params_.period);
+}
 
 Result<void> ObjectsPart::on_start() {
   offer(service_, [this](const auto& job, const auto& reply) { take(job, reply); });
@@ -100,6 +112,7 @@ Result<void> ObjectsPart::on_start() {
 
 void ObjectsPart::on_stop() {
   tick_.cancel();
+  retry_.cancel();
   for (const auto& reader : readers_) reader->close();
 }
 
@@ -118,10 +131,13 @@ void ObjectsPart::load() {
       [make = params_.make, detector = params_.detector] { return make(detector); },
       [this](Result<std::shared_ptr<perception::ObjectDetector>> made) {
         searching_ = false;
-        if (made)
+        if (made) {
           detector_ = std::move(*made);
-        else
+        } else if (is_passing(made.reason())) {
+          retry_ = after(kRetry, [this] { load(); });
+        } else {
           no_detector_ = made.error();
+        }
       });
 }
 
@@ -129,6 +145,8 @@ void ObjectsPart::tick() {
   // As long as it lasts, the health report has it.
   if (no_detector_) return fault_({"objects", "detector_refused", Severity::warning, *no_detector_});
   if (!detector_) return;
+  // No scan released it: the lidar is silent, or the robot lost its place.
+  if (pending_ && !searching_ && now() - pending_->picture->received > 2 * kPatience) pending_.reset();
   for (const auto& reader : readers_) reader->tick(io_, now());
   // A camera without pictures does not hold up the others.
   if (!pending_ && !searching_ && (!last_ || now() - *last_ >= 2 * params_.period)) {
@@ -179,7 +197,10 @@ Result<Pose3> ObjectsPart::pose_at(const DriverPicture& picture) const {
   }
   if (auto pose = poses.at(wanted)) return pose;
   if (nearest == nullptr || apart > kNearScan)
-    return Error{Reason::sensor_times, "no scan is of the time of a picture: objects in it have no place"};
+    return Error{
+        Reason::sensor_times,
+        "no scan is of the time of a picture: objects in it have no place; are the clocks of camera and "
+        "lidar synchronised, and does the picture come within 2 s?"};
   return nearest->scan->located;
 }
 
@@ -215,43 +236,59 @@ void ObjectsPart::search(const Pending& pending, const Pose3& T_odom_base) {
        .lane = "objects"},
       [picture = pending.picture, detector = detector_, T_odom_camera, field_of_view = config.field_of_view,
        name = config.name,
-       scans = scans_near(*pending.picture)](const std::stop_token& stop) -> Result<std::vector<SeenObject>> {
+       scans = scans_near(*pending.picture)](const std::stop_token& stop) -> Result<Found> {
         const std::uint32_t side = detector->picture_side();
         const auto pixels = pixels_of(*picture, side, side);
         if (!pixels) return pixels.error();
         auto boxes = detector->detect(*pixels);
-        if (!boxes) return boxes.error();
-        std::vector<SeenObject> out;
+        Found out;
+        if (!boxes) {
+          out.detector = boxes.error();
+          return out;
+        }
         if (boxes->empty()) return out;
+        std::ranges::stable_sort(*boxes, std::greater<>{}, &perception::ObjectBox::score);
         const perception::PinholeView view{field_of_view,
                                            static_cast<double>(pixels->width) / pixels->height};
         const auto points = points_in_camera(scans, T_odom_camera);
+        std::optional<perception::Picture> sharp;
         for (const perception::ObjectBox& box : *boxes) {
           const auto place = perception::place_object(box, view, points);
           if (!place) continue;
           SeenObject seen{.camera = name, .kind = box.kind, .score = box.score, .sigma = place->sigma};
           seen.position = T_odom_camera * place->position;
-          if (auto photo = findings::make_photo(cut_out(*pixels, box), stop))
-            seen.photo = std::make_shared<findings::Photo>(std::move(*photo));
-          out.push_back(std::move(seen));
+          if (!sharp) {
+            auto large = pixels_of(*picture, kPhotoSource, kPhotoSource);
+            sharp = large ? std::move(*large) : *pixels;
+          }
+          if (out.objects.size() < kPhotos)
+            if (auto photo = findings::make_photo(cut_out(*sharp, box), stop))
+              seen.photo = std::make_shared<findings::Photo>(std::move(*photo));
+          out.objects.push_back(std::move(seen));
         }
         return out;
       },
       [this, camera = pending.camera, epoch = newest.odom_epoch,
-       jumps = newest.scan->jumps](Result<std::vector<SeenObject>> seen) {
-        searching_ = false;
-        // Work that hung may still use the detector.
-        if (seen.reason() == Reason::no_answer) {
-          detector_.reset();
-          no_detector_ = Error{Reason::no_answer, "the detector did not come to an end; restart objects"};
-          return;
-        }
-        if (!seen) return readers_[camera]->report(seen.error(), "sensor_refused");
-        // The frame may have begun again, or jumped, meanwhile.
-        if (scans_.empty() || scans_.back()->odom_epoch != epoch || scans_.back()->scan->jumps != jumps)
-          return;
-        ready_ = {std::move(*seen), epoch, ++pictures_};
-      });
+       jumps = newest.scan->jumps](Result<Found> result) { found(camera, std::move(result), epoch, jumps); });
+}
+
+void ObjectsPart::found(std::size_t camera, Result<Found> result, std::uint32_t epoch, std::uint32_t jumps) {
+  searching_ = false;
+  if (!result) {
+    if (is_passing(result.reason())) return log().warn("objects: " + result.error().text);
+    if (result.reason() != Reason::no_answer)
+      return readers_[camera]->report(result.error(), "sensor_refused");
+    // Work that hung may still use the detector.
+    detector_.reset();
+    no_detector_ = Error{Reason::no_answer, "the detector did not come to an end; restart objects"};
+    return;
+  }
+  if (result->detector)
+    return fault_({"objects", "detector_refused", Severity::warning, *std::move(result->detector)});
+  // The frame may have begun again, or jumped, meanwhile.
+  if (scans_.empty() || scans_.back()->odom_epoch != epoch || scans_.back()->scan->jumps != jumps) return;
+  ++pictures_;
+  ready_ = {std::move(result->objects), epoch, (std::uint64_t{params_.instance} << 32) | pictures_};
 }
 
 }  // namespace adit::agent

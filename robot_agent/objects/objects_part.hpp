@@ -27,10 +27,12 @@ struct ObjectsPartParams {
   std::size_t max_scans{24};           ///< In the window.
   std::size_t used_scans{6};           ///< Those nearest to the exposure, with which objects are placed.
   Duration modelled{150ms};            ///< Duration of a search in rehearsal.
+  std::uint32_t instance{1};           ///< Of the component since the start of the agent.
 };
 
 /// The component that seeks objects in pictures of the robot's cameras, one a second in turns, and places
-/// them with the lidar, on a strand of its own. The detector runs as compute work.
+/// them with the lidar, on a strand of its own. The detector runs as compute work, which may take seconds:
+/// the strand must not be a dedicated one, on which that counts as a hang.
 class ObjectsPart : public Component {
  public:
   /// A picture waits at most so long for a scan that is as new.
@@ -50,14 +52,21 @@ class ObjectsPart : public Component {
     std::shared_ptr<const DriverPicture> picture{};
     std::size_t camera{};
   };
+  /// What a search gave: objects, or why the detector cannot be used. The error of a Result is the picture's.
+  struct Found {
+    std::vector<SeenObject> objects{};
+    std::optional<Error> detector{};
+  };
   void load();
+  bool wants_picture(std::size_t camera) const;
+  void found(std::size_t camera, Result<Found> result, std::uint32_t epoch, std::uint32_t jumps);
   void tick();
   void take(const std::shared_ptr<const ObjectsJob>& job, const Reply<ObjectsStep>& reply);
   void take(std::size_t camera, std::shared_ptr<const DriverPicture> picture);
   /// Searches the pending picture once the odometry reaches its exposure.
   void search_when_located();
   void search(const Pending& pending, const Pose3& T_odom_base);
-  /// The pose of the body at the exposure. Error: out_of_range, when no scan is near that time.
+  /// The pose of the body at the exposure. Error: sensor_times, when no scan is near that time.
   Result<Pose3> pose_at(const DriverPicture& picture) const;
   bool has_scan_after(const DriverPicture& picture) const;
   /// The scans nearest to the exposure.
@@ -77,7 +86,7 @@ class ObjectsPart : public Component {
   std::size_t turn_{};          ///< Camera that is next.
   std::uint64_t pictures_{};
   ObjectsStep ready_{};
-  Timer tick_{};
+  Timer tick_{}, retry_{};
 };
 
 /// The points of scans in the frame of a camera, m, without those of other robots.

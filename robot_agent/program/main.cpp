@@ -164,7 +164,8 @@ int run_agent(const RobotConfig& config, const Options& options) {
   if (!log) return fail(log.error(), 1);
   const auto inner = robot_wire(config);
   if (!inner) return fail(inner.error(), 2);
-  LiveRuntime runtime;
+  // A detector of objects takes tenths of a second: other computations do not wait for it.
+  LiveRuntime runtime({.compute_threads = config.objects ? 2 : 1});
   auto over = config.radio;
   over.link_seed = drawn_seed();
   auto radio = wire::open_fastdds(over);

@@ -317,6 +317,16 @@ TEST_F(DetectionReporterTest, TheAgentsOwnDetectorAddsSigmaAndTheBestPhoto) {
   EXPECT_THAT(stored, ElementsAre(12U, 14U)) << "another one only where it is surer";
 }
 
+TEST_F(DetectionReporterTest, ALoneSightingOfLongAgoLendsNoScoreToALaterOne) {
+  reporter_.emplace(ObjectsParams{}.report, "r1", source_);
+  see({5.0}, {}, "camera front", 0.9);
+  now_ += 1h;
+  see({5.0}, {}, "camera front", 0.6);
+  see({5.0}, {}, "camera front", 0.6);
+  ASSERT_EQ(places().size(), 1U);
+  EXPECT_EQ(source_.finding_store().all().begin()->second.text, "score 0.60");
+}
+
 TEST_F(DetectionReporterTest, AFloodIsBounded) {
   for (int n = 0; n < 30; ++n) {  // Three seconds.
     std::vector<double> many;

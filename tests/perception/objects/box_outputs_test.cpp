@@ -10,8 +10,9 @@ namespace {
 
 using testing::HasSubstr;
 
-Result<std::vector<RawBox>> read(const std::vector<OutputTensor>& outputs, std::size_t labels = 2) {
-  return read_boxes(outputs, labels, 100, 50, 0.5);
+Result<std::vector<RawBox>> read(const std::vector<OutputTensor>& outputs, std::size_t labels = 2,
+                                 bool background = false) {
+  return read_boxes(outputs, labels, background, 100, 50, 0.5);
 }
 
 void expect_box(const Result<std::vector<RawBox>>& boxes, std::size_t label, float score) {
@@ -41,6 +42,11 @@ TEST(BoxOutputs, ReadsSsd) {
   const std::vector<float> values{0, 1, 0.7F, 0.1F, 0.4F, 0.3F, 0.8F, 0, 9, 0.9F, 0,
                                   0, 1, 1,    -1,   0,    0,    0,    0, 0, 0};
   expect_box(read({{{1, 1, 3, 7}, values}}), 1, 0.7F);
+}
+
+TEST(BoxOutputs, TheFirstClassOfSsdMayBeTheBackground) {
+  const std::vector<float> values{0, 0, 0.9F, 0, 0, 1, 1, 0, 2, 0.7F, 0.1F, 0.4F, 0.3F, 0.8F};
+  expect_box(read({{{1, 1, 2, 7}, values}}, 2, true), 1, 0.7F);
 }
 
 TEST(BoxOutputs, ReadsSsdWithTwoOutputsInAnyOrder) {

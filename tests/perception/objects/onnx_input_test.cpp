@@ -53,6 +53,14 @@ TEST(OnnxInput, OpenSidesAre640) {
   EXPECT_EQ(input->height, 640U);
 }
 
+TEST(OnnxInput, SidesOfMinusOneAreOpen) {
+  const auto open = static_cast<std::uint64_t>(-1);
+  const auto input = read(with_inputs({value_info("images", {open, 3, open, 416})}));
+  ASSERT_TRUE(input) << input.error().text;
+  EXPECT_EQ(input->height, 640U);
+  EXPECT_EQ(input->width, 416U);
+}
+
 TEST(OnnxInput, RefusesWhatIsNoPicture) {
   EXPECT_THAT(read(with_inputs({value_info("text", {1, 128})})).error().text, testing::HasSubstr("[1, 128]"));
   EXPECT_EQ(read(with_inputs({value_info("images", {8, 3, 64, 64})})).reason(), Reason::malformed);
