@@ -52,7 +52,15 @@ Result<std::string> Cameras::named(const Robot& robot, const std::string& camera
   return Error{Reason::not_supported, robot + " has no camera " + camera + ": its cameras are " + names};
 }
 
-bool Cameras::is_looked_at(const View& view) const { return view.on || view.front_end > strand_.now(); }
+Cameras::Demand Cameras::demand_of(const View& view) const {
+  Demand most;
+  for (const Demand& demand : view.demands) {
+    if (demand.until <= strand_.now()) continue;
+    most.width = std::max(most.width, demand.width);
+    most.rate = std::max(most.rate, demand.rate);
+  }
+  return most.width == 0 && view.on ? Demand{.width = kWidth, .rate = kRate} : most;
+}
 
 Result<void> Cameras::open() {
   if (ends_) return {};
@@ -86,7 +94,7 @@ Result<void> Cameras::set_on(const Robot& robot, const std::string& camera, bool
     const auto known = views_.find({robot, *name});
     if (known == views_.end()) return {};
     known->second.on = false;
-    known->second.front_end = {};
+    known->second.demands.clear();
   } else {
     const auto view = view_of(robot, camera);
     if (!view) return view.error();
@@ -100,15 +108,21 @@ Result<void> Cameras::set_on(const Robot& robot, const std::string& camera, bool
 Result<void> Cameras::look(const Robot& robot, const std::string& camera, std::uint16_t width, float rate) {
   const auto view = view_of(robot, camera);
   if (!view) return view.error();
-  View& shown = **view;
-  const auto bounded = std::min(width, contract::CameraView::kMaxWidth);
-  const float often = std::clamp(rate, 0.1F, contract::CameraView::kMaxRate);
-  // Of several front ends the one that wants most counts while any looks.
-  if (shown.front_end <= strand_.now()) shown.width = 0, shown.rate = 0;
-  changed_ = changed_ || bounded > shown.width || often > shown.rate;
-  shown.width = std::max(shown.width, bounded);
-  shown.rate = std::max(shown.rate, often);
-  shown.front_end = strand_.now() + kFrontEnd;
+  const Time now = strand_.now();
+  const Demand before = demand_of(**view);
+  const Demand wanted{.width = std::clamp<std::uint16_t>(width, 1, contract::CameraView::kMaxWidth),
+                      .rate = std::clamp(rate, 0.1F, contract::CameraView::kMaxRate),
+                      .until = now + kFrontEnd};
+  std::vector<Demand>& demands = (*view)->demands;
+  // A front end repeats its demand; one that shows less from now on repeats the lower one, and the other
+  // ends.
+  std::erase_if(demands, [&](const Demand& each) {
+    return each.until <= now || (each.width == wanted.width && each.rate == wanted.rate);
+  });
+  if (demands.size() >= kMaxDemands) demands.erase(demands.begin());
+  demands.push_back(wanted);
+  const Demand after = demand_of(**view);
+  changed_ = changed_ || after.width != before.width || after.rate != before.rate;
   return {};
 }
 
@@ -221,7 +235,7 @@ void Cameras::tick() {
   shots_.tick(now);
   if (!presence_.up()) {
     shots_.cancel_all();
-    for (auto& [key, view] : views_) view.on = false, view.front_end = {};
+    for (auto& [key, view] : views_) view.on = false, view.demands.clear();
   }
   bool dropped = false;
   for (auto& [key, view] : views_) {
@@ -258,9 +272,9 @@ void Cameras::send() {
   for (const auto& [key, view] : views_) {
     contract::CameraView& out = message.views.emplace_back(contract::CameraView{
         .robot = key.first, .camera = key.second, .shot = shots_.awaited(key.first, key.second)});
-    const bool front_end = view.front_end > now;
-    out.width = std::max<std::uint16_t>(view.on ? kWidth : 0, front_end ? view.width : 0);
-    out.rate = std::max(view.on ? kRate : 0.0F, front_end ? view.rate : 0.0F);
+    const Demand demand = demand_of(view);
+    out.width = demand.width;
+    out.rate = demand.rate;
     shots_.asked(out.shot, now);
     if (const auto& newest = view.store.newest()) {
       out.run = newest->run;

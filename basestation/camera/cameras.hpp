@@ -31,7 +31,7 @@ class Cameras {
   static constexpr std::size_t kMost = 16;      ///< Cameras that are looked at, as many as a message names.
   static constexpr Duration kFrontEnd{3s};      ///< A front end that looks says so at least this often.
   static constexpr Duration kWaits{1s};         ///< The longest wait for a newer picture.
-  static constexpr std::uint16_t kWidth = 640;  ///< Of a camera that was switched on.
+  static constexpr std::uint16_t kWidth = 640;  ///< Of a camera that was switched on and that none shows.
   static constexpr float kRate = 15.0F;
 
   using Robot = std::string;
@@ -46,8 +46,9 @@ class Cameras {
   Result<std::string> named(const Robot& robot, const std::string& camera) const;
   /// Switches the live pictures of a camera on or off. Errors: as of named(); queue_full, wire_failed.
   Result<void> set_on(const Robot& robot, const std::string& camera, bool on);
-  /// A front end shows the camera's pictures, at most so wide and often; holds for kFrontEnd. Errors: as of
-  /// set_on().
+  /// A front end shows the camera's pictures, at most so wide and often; holds for kFrontEnd. While any
+  /// looks, robots are asked for the largest of these sizes and rates, also of a camera that was switched on.
+  /// Errors: as of set_on().
   Result<void> look(const Robot& robot, const std::string& camera, std::uint16_t width, float rate);
   /// Calls `taken` once: with the newest picture that has a higher number than `after`, as soon as there is
   /// one, or after kWaits with an empty one.
@@ -72,12 +73,16 @@ class Cameras {
     Time until{};
     Taken taken{};
   };
-  struct View {
-    bool on{};
-    Time front_end{};  ///< Until when a front end looks.
+  /// A size and a rate that a front end shows.
+  struct Demand {
     std::uint16_t width{};
     float rate{};
-    Time ends{};  ///< It is sent once more that no one looks.
+    Time until{};
+  };
+  struct View {
+    bool on{};
+    std::vector<Demand> demands{};  ///< Of front ends, at most kMaxDemands.
+    Time ends{};                    ///< It is sent once more that no one looks.
     perception::StripeStore store{};
     CameraPicture newest{};
     Time exposed{}, arriving{};                         ///< Of `newest`, and of the picture that is arriving.
@@ -86,7 +91,10 @@ class Cameras {
     std::deque<Time> pictures{};                        ///< When the pictures of the last seconds came.
     std::vector<Waiting> waiting{};
   };
-  bool is_looked_at(const View& view) const;
+  static constexpr std::size_t kMaxDemands = 8;
+  /// The largest size and rate that is wanted now; a width of 0: no one looks.
+  Demand demand_of(const View& view) const;
+  bool is_looked_at(const View& view) const { return demand_of(view).width > 0; }
   Result<View*> view_of(const Robot& robot, const std::string& camera);
   Result<void> open();
   void take(const radio::CameraPiece& sample, const wire::SampleInfo& info);

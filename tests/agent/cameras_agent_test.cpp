@@ -213,6 +213,19 @@ TEST_F(Cameras, CommandsSwitchThemOnAndOff) {
   EXPECT_THAT(execute("camera r9 on").error, HasSubstr("r9"));
 }
 
+TEST_F(Cameras, WhatAFrontEndShowsLessOfIsAskedForLess) {
+  begin(kWifi);
+  ASSERT_EQ(execute("camera r1 on").exit_code, 0);
+  (void)watch(4s);
+  EXPECT_EQ(watch(1s).back().width, 640U);
+  (void)watch(4s, 160);
+  const auto small = watch(1s, 160);
+  ASSERT_FALSE(small.empty());
+  EXPECT_EQ(small.back().width, 160U) << "the large one is not shown any more";
+  bench->run(8s);
+  EXPECT_THAT(execute("cameras r1").text, HasSubstr("640x480")) << "it is on, and no front end shows it";
+}
+
 TEST_F(Cameras, ACameraWithoutPicturesIsReported) {
   begin(kWifi);
   sends = false;
