@@ -23,7 +23,7 @@ const std::set<QString> kLow{
     "commandClose", "commandField", "proposal",      "cure",          "closeDetails",    "fitAll",
     "solidToggle",  "cutToggle",    "followToggle",  "areaToggle",    "zoomIn",          "zoomOut",
     "logWarnings",  "logSelected",  "logExport",     "logTextInput",  "receptionToggle", "hearingToggle",
-    "see",          "later",        "markToggle"};
+    "see",          "later",        "markToggle",    "cameraOn",      "cameraOff"};
 /// Texts that may be cut off: they are whole in another place, which is beside them.
 const std::map<QString, QString> kCut{{"budget", "the command net, with all that was not sent"}};
 
@@ -119,7 +119,7 @@ TEST_F(Accessibility, EveryTargetHasANameAndARoleAndIsLargeEnoughAndNoTextIsCutO
   control.set_solid(true);
   walk("three dimensions");
   control.set_solid(false);
-  for (const char* tab : {"health", "network", "findings", "stairs", "settings", "log"}) {
+  for (const char* tab : {"health", "network", "findings", "stairs", "cameras", "settings", "log"}) {
     TabsTest::open(tab);
     if (std::string(tab) == "health") {
       control.tabs()->choose("r4", "planner");
@@ -128,6 +128,11 @@ TEST_F(Accessibility, EveryTargetHasANameAndARoleAndIsLargeEnoughAndNoTextIsCutO
     if (std::string(tab) == "network") answer(answer_of(network_of_ten()));
     if (std::string(tab) == "findings") answer(answer_of(some_findings()));
     if (std::string(tab) == "stairs") answer(answer_of(some_stairs()));
+    if (std::string(tab) == "cameras") {
+      show(robots_with_cameras());
+      control.cameras()->switchOn("r2", "front", false);
+      answer(answer_of(network_of_ten()), "net");
+    }
     walk(tab);
   }
   station::FoundReport found = some_findings();

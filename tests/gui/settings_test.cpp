@@ -127,7 +127,7 @@ TEST_F(SettingsTest, EveryTabFitsInEverySize) {
     Theme::instance().set_light(look.light);
     Theme::instance().set_scale(look.scale);
     Theme::instance().set_glove(look.glove);
-    for (const char* tab : {"health", "network", "findings", "stairs", "settings", "log"}) {
+    for (const char* tab : {"health", "network", "findings", "stairs", "cameras", "settings", "log"}) {
       open(tab);
       if (std::string(tab) == "health") {
         control.tabs()->choose("r4", "planner");
@@ -136,6 +136,11 @@ TEST_F(SettingsTest, EveryTabFitsInEverySize) {
       if (std::string(tab) == "network") answer(answer_of(network_of_ten()));
       if (std::string(tab) == "findings") answer(answer_of(some_findings()));
       if (std::string(tab) == "stairs") answer(answer_of(some_stairs()));
+      if (std::string(tab) == "cameras") {
+        show(robots_with_cameras());
+        control.cameras()->switchOn("r2", "front", false);
+        answer(answer_of(network_of_ten()), "net");
+      }
       picture(QString("tab_") + tab + "_" + look.name);
       QQuickItem* panel = item("panel");
       EXPECT_GE(panel->mapToScene({0, 0}).y(), 0.0) << tab << look.name;

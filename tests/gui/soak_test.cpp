@@ -61,8 +61,8 @@ class Soak : public TabsTest {
     }
   }
   void operate(int step) {
-    const char* tabs[] = {"health", "network", "findings", "stairs", "settings", "log"};
-    if (step % 20 == 0) control.tabs()->toggle(tabs[step / 20 % 5]);
+    const char* tabs[] = {"health", "network", "findings", "stairs", "cameras", "settings", "log"};
+    if (step % 20 == 0) control.tabs()->toggle(tabs[step / 20 % static_cast<int>(std::size(tabs))]);
     if (step % 33 == 0) control.set_solid(!control.solid());
     if (step % 60 == 0) Theme::instance().set_light(!Theme::instance().light());
     if (step % 240 == 0) Theme::instance().set_glove(!Theme::instance().glove());

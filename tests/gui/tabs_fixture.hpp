@@ -146,6 +146,14 @@ inline station::FoundReport findings_with_stairs() {
   return report;
 }
 
+/// The ten robots; all but the last two have a camera, and r1 has two.
+inline station::World robots_with_cameras() {
+  station::World world = ten_robots();
+  for (std::size_t i = 0; i + 2 < world.robots.size(); ++i) world.robots[i].cameras = {{.name = "front"}};
+  world.robots[0].cameras.push_back({.name = "back"});
+  return world;
+}
+
 /// The window with answers of a station for its tabs.
 class TabsTest : public Window {
  protected:

@@ -21,7 +21,7 @@ QStringList column(QAbstractItemModel* model, int role) {
 
 TEST_F(TabsTest, KeysAndFingersOpenTabsAndTheActionBarStaysWhereItIs) {
   const QPoint hold = middle("button_mode_hold");
-  const QStringList names{"log", "findings", "health", "network", "stairs", "settings"};
+  const QStringList names{"log", "findings", "health", "network", "stairs", "cameras", "settings"};
   EXPECT_EQ(control.tabs()->open(), "log");
   EXPECT_GT(map().height(), 0.5 * window()->height()) << "with the log open";
   for (int i = 1; i < names.size(); ++i) {

@@ -56,6 +56,7 @@ Control::Control(CommandSink& sink, QObject* parent)
   connect(&drive_, &DriveControl::changed, &tabs_, [this] {
     if (drive_.driving()) tabs_.photos()->close();
   });
+  connect(&tabs_, &TabState::network_changed, &cameras_, &CameraGrid::refresh);
   connect(&tabs_, &TabState::findings_changed, this, &Control::stairs_shown);
   connect(this, &Control::shown, this, &Control::stairs_shown);
   connect(&tabs_, &TabState::said, this,
@@ -98,6 +99,7 @@ void Control::refresh() {
   show_bar();
   attention_.refresh();
   details_.refresh();
+  cameras_.refresh();
   area_.refresh();
   tabs_.show(world_, selection_, silent());
   emit shown();
@@ -256,6 +258,7 @@ void Control::show_notice(const station::Notice& notice) {
 
 void Control::add_command(const station::CommandEvent& event) {
   tabs_.add_command(event);
+  cameras_.add_command(event);
   if (event.query || !event.ended) return;
   const bool own = event.mine || event.pid == ::getpid();  // A stop uses a connection of its own.
   const QString who =

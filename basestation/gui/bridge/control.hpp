@@ -16,6 +16,7 @@
 #include "basestation/gui/bridge/area_tool.hpp"
 #include "basestation/gui/bridge/attention_list.hpp"
 #include "basestation/gui/bridge/camera_feeds.hpp"
+#include "basestation/gui/bridge/camera_grid.hpp"
 #include "basestation/gui/bridge/command_line.hpp"
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/detail_list.hpp"
@@ -54,6 +55,7 @@ class Control : public QObject {
   Q_PROPERTY(adit::gui::AttentionList* attention READ attention CONSTANT)
   Q_PROPERTY(adit::gui::DetailList* details READ details CONSTANT)
   Q_PROPERTY(adit::gui::CameraFeeds* feeds READ feeds CONSTANT)
+  Q_PROPERTY(adit::gui::CameraGrid* cameras READ cameras CONSTANT)
   Q_PROPERTY(adit::gui::DriveControl* drive READ drive CONSTANT)
   Q_PROPERTY(adit::gui::CommandLine* commandLine READ command_line CONSTANT)
   Q_PROPERTY(QString stopText READ stop_text NOTIFY shown)
@@ -154,6 +156,7 @@ class Control : public QObject {
   QAbstractItemModel* log() { return &log_; }
   TabState* tabs() { return &tabs_; }
   CameraFeeds* feeds() { return &feeds_; }
+  CameraGrid* cameras() { return &cameras_; }
   QString operator_name() const { return text_of(world_->station); }
   QString link() const { return text_of(world_->link); }
   int robot_count() const { return static_cast<int>(world_->robots.size()); }
@@ -251,6 +254,7 @@ class Control : public QObject {
   MarkTool mark_{*this};
   AttentionList attention_{*this};
   DetailList details_{*this};
+  CameraGrid cameras_{*this};
   DriveControl drive_{*this};
   CommandLine command_line_{*this};
   std::uint64_t last_notice_{};  ///< The newest one that was shown.

@@ -20,8 +20,8 @@ namespace {
 constexpr int kPeriodMs = 1000;
 constexpr int kFoundLaterMs = 300;
 
-/// The keys F2 to F7 in their order, and the names of the tabs.
-constexpr std::array kTabNames{"log", "findings", "health", "network", "stairs", "settings"};
+/// The keys F2 to F8 in their order, and the names of the tabs.
+constexpr std::array kTabNames{"log", "findings", "health", "network", "stairs", "cameras", "settings"};
 
 }  // namespace
 
@@ -106,13 +106,13 @@ void TabState::toggle(const QString& tab) {
 }
 
 void TabState::time_questions() {
-  const bool asks = extra_ == "health" || extra_ == "network" || extra_ == "stairs" || watching_network_;
+  const bool asks = extra_ == "health" || extra_ == "network" || extra_ == "stairs" || network_watchers_ > 0;
   if (asks && !timer_.isActive()) timer_.start();
   if (!asks) timer_.stop();
 }
 
 void TabState::watch_network(bool watch) {
-  watching_network_ = watch;
+  network_watchers_ += watch ? 1 : -1;
   time_questions();
   if (watch) ask();
 }
@@ -145,7 +145,7 @@ void TabState::ask_for(const char* line, Result<Report> (*read)(const station::C
 void TabState::ask() {
   if (extra_ == "health")
     ask_for("health", &station::health_of, health_asked_, health_, &TabState::show_health);
-  if (extra_ == "network" || watching_network_)
+  if (extra_ == "network" || network_watchers_ > 0)
     ask_for("net", &station::network_of, network_asked_, net_, &TabState::show_network);
   if (extra_ == "stairs" && !stairs_asked_) ask_stairs();
 }

@@ -23,8 +23,9 @@
 namespace adit::gui {
 
 /// The tabs at the bottom of the window: which one is open, and what they show. The log can stay open; the
-/// others cover the map's lower part until they are closed. Health, network and staircases are asked for once
-/// a second, only while they are open; findings, and the staircases among them, when they changed.
+/// others cover the map's lower part until they are closed, that of cameras all of it. Health, network and
+/// staircases are asked for once a second, only while they are open; findings, and the staircases among them,
+/// when they changed.
 class TabState : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -109,7 +110,7 @@ class TabState : public QObject {
   int picked_row() const;
   int picked_stairs_row() const;
   const station::NetworkReport& net() const { return net_; }
-  /// Asks for the network also while its tab is closed.
+  /// Asks for the network also while its tab is closed, until each who began has ended it.
   void watch_network(bool watch);
   const station::FoundReport& found() const { return found_; }
   const station::StairsReport& staircases() const { return stairs_report_; }
@@ -156,7 +157,7 @@ class TabState : public QObject {
   bool found_again_{false};        ///< Findings changed while they were asked for.
   station::HealthReport health_{};
   station::NetworkReport net_{};
-  bool watching_network_{false};
+  int network_watchers_{0};
   station::FoundReport found_{};
   PhotoView photos_;                                ///< Of `found_`.
   bool stairs_asked_{false}, stairs_again_{false};  ///< As of findings.

@@ -16,13 +16,17 @@ void TabState::show_tabs() {
   });
   const auto troubled = std::count_if(world_->robots.begin(), world_->robots.end(),
                                       [](const station::Robot& robot) { return !robot.troubles.empty(); });
+  std::ptrdiff_t cameras = 0;
+  for (const station::Robot& robot : world_->robots)
+    cameras += std::ranges::count_if(robot.cameras, &station::CameraStatus::kept_on);
   const auto count = [](auto number) { return number > 0 ? QString::number(number) : QString(); };
   tabs_.show({{"log", "Log", "F2", QString(), false},
               {"findings", "Findings", "F3", count(open_findings), false},
               {"health", "Health", "F4", count(troubled), troubled > 0},
               {"network", "Network", "F5", QString(), false},
               {"stairs", "Stairs", "F6", count(staircases), false},
-              {"settings", "Settings", "F7", QString(), false}});
+              {"cameras", "Cameras", "F7", count(cameras), false},
+              {"settings", "Settings", "F8", QString(), false}});
 }
 
 void TabState::show_health() {

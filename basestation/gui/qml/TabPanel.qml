@@ -2,7 +2,8 @@
 import QtQuick
 import Adit
 
-// What the open tab shows, above the action bar. The log takes a strip of the map; the others cover more of it.
+// What the open tab shows, above the action bar. The log takes a strip of the map, that of cameras all of it; the
+// others cover most of it.
 Rectangle {
     id: panel
     required property Control control
@@ -12,7 +13,7 @@ Rectangle {
     readonly property double tall: Math.min(Math.max(0.62 * space, 66 * Theme.mm), space)
     objectName: "panel"
     visible: open !== ""
-    height: open === "log" ? strip : tall
+    height: open === "log" ? strip : open === "cameras" ? space : tall
     color: Theme.panel
 
     // Neither a finger nor the mouse on the panel reaches the map below it.
@@ -30,10 +31,11 @@ Rectangle {
     Component { id: health; HealthTab { control: panel.control } }
     Component { id: network; NetworkTab { control: panel.control } }
     Component { id: stairs; StairsTab { control: panel.control } }
+    Component { id: cameras; CameraWall { control: panel.control } }
     Component { id: settings; SettingsTab { control: panel.control } }
     Loader {
         anchors.fill: parent
-        sourceComponent: ({ findings: findings, health: health, network: network, stairs: stairs, settings: settings })[panel.open] ?? null
+        sourceComponent: ({ findings: findings, health: health, network: network, stairs: stairs, cameras: cameras, settings: settings })[panel.open] ?? null
     }
     Rectangle {
         width: parent.width

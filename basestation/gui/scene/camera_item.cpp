@@ -38,6 +38,13 @@ void CameraItem::set_camera(const QString& camera) {
   restart();
 }
 
+void CameraItem::set_active(bool active) {
+  if (active == active_) return;
+  active_ = active;
+  emit source_changed();
+  ask_soon();
+}
+
 void CameraItem::itemChange(ItemChange change, const ItemChangeData& data) {
   QQuickPaintedItem::itemChange(change, data);
   if (change == ItemVisibleHasChanged) restart();
@@ -55,20 +62,24 @@ void CameraItem::restart() {
   retry_.stop();
   const bool active = feeds_ != nullptr && !robot_.isEmpty() && isVisible();
   active ? aging_.start() : aging_.stop();
-  // Several properties change together.
-  if (active)
-    QTimer::singleShot(0, this, [this, run = run_] {
-      if (run == run_) ask();
-    });
+  ask_soon();
   update();
   emit source_changed();
   emit shown_changed();
 }
 
+/// Several properties change together.
+void CameraItem::ask_soon() {
+  QTimer::singleShot(0, this, [this, run = run_] {
+    if (run == run_) ask();
+  });
+}
+
 void CameraItem::ask() {
-  if (asked_ || feeds_ == nullptr || robot_.isEmpty() || !isVisible()) return;
+  if (asked_ || !active_ || feeds_ == nullptr || robot_.isEmpty() || !isVisible()) return;
   asked_ = true;
-  const double pixels = width() * (window() != nullptr ? window()->effectiveDevicePixelRatio() : 1.0);
+  const double shown = width() * (window() != nullptr ? window()->effectiveDevicePixelRatio() : 1.0);
+  const double pixels = limit_ > 0 ? std::min<double>(shown, limit_) : shown;
   feeds_->next({.robot = robot_.toStdString(),
                 .camera = camera_.toStdString(),
                 .width = static_cast<std::uint16_t>(std::clamp(pixels, 64.0, 1920.0)),
@@ -106,10 +117,16 @@ double CameraItem::age() const {
 QString CameraItem::caption() const {
   const QString name = camera_.isEmpty() ? robot_ : robot_ + " " + camera_;
   if (image_.isNull()) return name + ": " + (problem_.isEmpty() ? "waits for a picture" : problem_);
+  return name + ", " + age_text();
+}
+
+QString CameraItem::age_text() const {
+  return image_.isNull() ? QString() : short_age() + " old" + (missing_ > 0 ? ", parts lost" : "");
+}
+
+QString CameraItem::short_age() const {
   const double old = age();
-  QString text = name + ", " + QString::number(old, 'f', old < 10 ? 1 : 0) + " s old";
-  if (missing_ > 0) text += ", parts lost";
-  return text;
+  return image_.isNull() ? QString() : QString::number(old, 'f', old < 10 ? 1 : 0) + " s";
 }
 
 void CameraItem::paint(QPainter* painter) {
