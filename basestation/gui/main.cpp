@@ -31,6 +31,7 @@ struct Options {
   double after{3.0};  ///< Time until the screenshot, s.
   std::string size{"1280x720"};
   std::vector<std::string> select{};
+  WindowKind window{WindowKind::main};
   bool light{false};
 };
 
@@ -46,6 +47,9 @@ std::optional<int> read_options(int argc, char** argv, Options& options) {
   app.set_version_flag("--version", ADIT_VERSION, "The version");
   app.option_defaults()->always_capture_default();
   station::client::StationArguments arguments(app, options.station);
+  std::string window = "main";
+  app.add_option("--window", window, "main, or map: the map and all cameras, for a second screen")
+      ->check(CLI::IsMember({"main", "map"}));
   app.add_option("--select", options.select, "Robots that are selected at the start, may be repeated")
       ->allow_extra_args(false);
   app.add_option("--screenshot", options.screenshot, "Write a picture of the window (.png) and end");
@@ -58,6 +62,7 @@ std::optional<int> read_options(int argc, char** argv, Options& options) {
       "Examples:\n"
       "  adit_gui                                   the window of op1 on this machine\n"
       "  adit_gui --name op2 --link wifi --interface 10.0.0.4\n"
+      "  adit_gui --window map --size 1920x1080     a second screen beside it: map, cameras, stop of all\n"
       "  adit_gui --screenshot window.png --after 5 --size 1920x1080\n"
       "  QT_QPA_PLATFORM=offscreen QT_QUICK_BACKEND=software adit_gui --screenshot window.png   without a "
       "screen");
@@ -72,6 +77,7 @@ std::optional<int> read_options(int argc, char** argv, Options& options) {
   } catch (const CLI::ParseError& error) {
     return fail(station::kExitUsage, std::string(error.what()) + "; try --help");
   }
+  if (window == "map") options.window = WindowKind::map;
   if (const auto good = arguments.finish(); !good) return fail(station::kExitUsage, good.error().text);
   return std::nullopt;
 }
@@ -119,28 +125,33 @@ int show_window(int argc, char** argv, const Options& options, const QSize& size
   QGuiApplication::setApplicationDisplayName("Adit " + QString::fromStdString(options.station.name));
   // Without a GPU, Qt's own renderer paints only what changed, where OpenGL by the processor paints complete
   // frames.
-  if (!qEnvironmentVariableIsSet("QT_QUICK_BACKEND") && !has_gpu())
+  const bool by_gpu = !qEnvironmentVariableIsSet("QT_QUICK_BACKEND") && has_gpu();
+  if (!qEnvironmentVariableIsSet("QT_QUICK_BACKEND") && !by_gpu)
     QQuickWindow::setGraphicsApi(QSGRendererInterface::Software);
   auto station = station::client::Station::open(options.station, "adit_gui");
   if (!station)
     return fail(station.error().reason == Reason::bad_argument ? station::kExitUsage : station::kExitNoAnswer,
                 station.error().text);
   QtStation qt_station(std::move(*station));
-  Control control(qt_station);
+  const bool maps = options.window == WindowKind::map;
+  Control control(qt_station, maps ? Control::Orders::view_only : Control::Orders::all);
   control.tabs()->settings()->open(WindowSettings::default_file(), options.light);
   qt_station.show_in(control);
-  control.drive()->use(qt_station, [mapping = control.tabs()->settings()->pad()] {
-    auto gamepad = std::make_shared<station::input::Gamepad>(mapping);
-    InputThread::Pad pad([gamepad] { return gamepad->read(); });
-    pad.rumble = [gamepad](double strength, std::chrono::milliseconds duration) {
-      gamepad->rumble(strength, duration);
-    };
-    return pad;
-  });
+  // The sticks belong to the main window.
+  if (!maps)
+    control.drive()->use(qt_station, [mapping = control.tabs()->settings()->pad()] {
+      auto gamepad = std::make_shared<station::input::Gamepad>(mapping);
+      InputThread::Pad pad([gamepad] { return gamepad->read(); });
+      pad.rumble = [gamepad](double strength, std::chrono::milliseconds duration) {
+        gamepad->rumble(strength, duration);
+      };
+      return pad;
+    });
   for (const std::string& robot : options.select) control.select(QString::fromStdString(robot), true);
   constexpr int kWide = 1600;  // There is room for the details beside the map.
-  control.details()->set_open(size.width() >= kWide);
-  const OperatorWindow window(control);
+  control.details()->set_open(size.width() >= kWide && !maps);
+  control.set_solid(maps && by_gpu);
+  const OperatorWindow window(control, options.window);
   if (!window.window())
     return fail(station::kExitRefused, "the window's files could not be loaded, see above");
   window.window()->resize(size);

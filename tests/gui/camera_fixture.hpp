@@ -23,24 +23,26 @@ inline perception::Picture corridor(std::uint8_t red, std::uint8_t green) {
   return out;
 }
 
+/// What the station answers to a request for pictures.
+inline station::CommandOutcome outcome_of(const perception::Picture& pixels, std::uint64_t number,
+                                          double age = 0.2, std::vector<std::uint8_t> missing = {},
+                                          const std::string& robot = "r1") {
+  station::CameraPicture picture{.robot = robot,
+                                 .camera = "front",
+                                 .number = number,
+                                 .jpeg = perception::encode_jpeg(pixels, 80),
+                                 .width = pixels.width,
+                                 .height = pixels.height,
+                                 .colour = true,
+                                 .span = 10,
+                                 .missing = std::move(missing),
+                                 .age = age};
+  return {.json = station::line_of(station::camera_json(picture))};
+}
+
 /// The window, and pictures of cameras as the station sends them.
 class CameraWindow : public TabsTest {
  protected:
-  static station::CommandOutcome outcome_of(const perception::Picture& pixels, std::uint64_t number,
-                                            double age = 0.2, std::vector<std::uint8_t> missing = {},
-                                            const std::string& robot = "r1") {
-    station::CameraPicture picture{.robot = robot,
-                                   .camera = "front",
-                                   .number = number,
-                                   .jpeg = perception::encode_jpeg(pixels, 80),
-                                   .width = pixels.width,
-                                   .height = pixels.height,
-                                   .colour = true,
-                                   .span = 10,
-                                   .missing = std::move(missing),
-                                   .age = age};
-    return {.json = station::line_of(station::camera_json(picture))};
-  }
   void show_cameras() {
     station::World world = ten_robots();
     world.robots[0].cameras = {{.name = "front"}, {.name = "back"}};

@@ -126,7 +126,7 @@ TEST(CameraPlan, TheSharpCameraHasALimitedLinkOfItsRobotAlone) {
   site.world.robots[0].cameras.push_back({.name = "back"});
   const CameraPlan plan = site.plan();
   EXPECT_EQ(plan.cameras[1].role, CameraRole::waits);
-  EXPECT_EQ(plan.cameras[1].why, "waits: mesh_500k carries the large picture of r1");
+  EXPECT_EQ(plan.cameras[1].why, "r1 sends the large picture");
   EXPECT_EQ(plan.cameras[2].role, CameraRole::thumbnail);
   site.off = {{"r1", "front"}};
   EXPECT_EQ(site.plan().cameras[1].role, CameraRole::thumbnail) << "the sharp one is off";

@@ -38,8 +38,8 @@ class Fingers : public testing::Test {
   ~Fingers() override { EXPECT_THAT(warnings, testing::IsEmpty()) << "warnings of Qt and QML"; }
 
   /// Shows the window of that control.
-  void open(Control& control) {
-    operator_window = std::make_unique<OperatorWindow>(control);
+  void open(Control& control, WindowKind kind = WindowKind::main) {
+    operator_window = std::make_unique<OperatorWindow>(control, kind);
     if (window()) {
       window()->resize(1280, 720);
       window()->show();

@@ -53,11 +53,21 @@ TEST_F(Program, HelpHasExamples) {
   EXPECT_THAT(help.out, HasSubstr("adit_gui --name op2"));
 }
 
+TEST_F(Program, ASecondWindowShowsTheMapOfTheSameStation) {
+  EXPECT_EQ(run({"--screenshot", file("main.png"), "--after", "0.5"}).exit_code, 0);
+  const Finished ended =
+      run({"--window", "map", "--screenshot", file("map.png"), "--after", "0.5", "--size", "1000x600"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_EQ(ended.err, "");
+  EXPECT_EQ(QImage(QString::fromStdString(file("map.png"))).size(), QSize(1000, 600));
+}
+
 TEST_F(Program, WrongOptionsSayWhatIsRightAndExitTwo) {
   for (const std::vector<std::string>& wrong :
        std::vector<std::vector<std::string>>{{"--nonsense"},
                                              {"--size", "big"},
                                              {"--size", "10x10"},
+                                             {"--window", "log"},
                                              {"--name", "a b"},
                                              {"--domain", "900"},
                                              {"--link", "no_such_link", "--screenshot", file("a.png")}}) {

@@ -126,7 +126,7 @@ CameraPlan camera_plan(const CameraPlanScene& scene) {
       camera.why = "waits for the report of " + scene.world->link;
     else if (room.bits < kAmpleRoom && sharp != plan.cameras.end() &&
              sharp->name.first == camera.name.first && sharp->role != CameraRole::off)
-      camera.why = "waits: " + room.link + " carries the large picture of " + camera.name.first;
+      camera.why = camera.name.first + " sends the large picture";
     else
       wanted.push_back(&camera);
   }

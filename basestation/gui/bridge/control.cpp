@@ -34,9 +34,10 @@ QString Control::one_line(const std::string& text) {
   return text_of(text).split('\n', Qt::SkipEmptyParts).join(" · ");
 }
 
-Control::Control(CommandSink& sink, QObject* parent)
+Control::Control(CommandSink& sink, Orders orders, QObject* parent)
     : QObject(parent),
       sink_(sink),
+      orders_(orders),
       world_(std::make_shared<station::World>()),
       map_(std::make_shared<station::TileMap>()),
       robots_({"name", "number", "glyph", "platform", "holder", "owner", "headline", "shortHeadline", "token",

@@ -75,13 +75,17 @@ class Control : public QObject {
   Q_PROPERTY(QString outcomeKind READ outcome_kind NOTIFY said)
   /// Whether the map is shown from the side.
   Q_PROPERTY(bool solid READ solid WRITE set_solid NOTIFY solid_changed)
+  /// Whether the window gives no orders to robots but stops: it selects, and switches cameras on and off.
+  Q_PROPERTY(bool viewOnly READ view_only CONSTANT)
   Q_PROPERTY(bool aiming READ aiming WRITE set_aiming NOTIFY aiming_changed)
   Q_PROPERTY(bool reasonsOpen READ reasons_open WRITE set_reasons_open NOTIFY reasons_open_changed)
 
  public:
   static constexpr std::size_t kMaxLog = 500;
 
-  explicit Control(CommandSink& sink, QObject* parent = nullptr);
+  enum class Orders : std::uint8_t { all, view_only };
+
+  explicit Control(CommandSink& sink, Orders orders = Orders::all, QObject* parent = nullptr);
 
   // From the station.
   /// `now`: steady time, s, that never falls.
@@ -184,6 +188,7 @@ class Control : public QObject {
   QString outcome_kind() const { return outcome_kind_; }
   bool solid() const { return solid_; }
   void set_solid(bool solid);
+  bool view_only() const { return orders_ == Orders::view_only; }
   bool aiming() const { return aiming_; }
   void set_aiming(bool aiming);
   bool reasons_open() const { return reasons_open_; }
@@ -234,6 +239,7 @@ class Control : public QObject {
   void show_notice(const station::Notice& notice);
 
   CommandSink& sink_;
+  Orders orders_;
   std::shared_ptr<const station::World> world_;
   std::shared_ptr<const station::TileMap> map_;
   Trails trails_{};

@@ -51,6 +51,7 @@ void Control::select(const QString& name, bool add) {
 }
 
 void Control::tap(const Target& target, bool add) {
+  if (target.finding != 0 && view_only()) return;  // There is no tab for it.
   if (target.finding != 0) return tabs_.show_finding(static_cast<int>(target.finding));
   select(text_of(target.robot), add);
 }
@@ -105,6 +106,8 @@ void Control::drop_orders() {
 }
 
 void Control::run(const std::string& line, const std::string& slot, CommandSink::Done then) {
+  if (view_only() && !line.starts_with("camera "))
+    return say("Not sent, as this window only shows: " + text_of(line), "refused");
   const int batch = batch_;
   say(text_of(line) + "  …", "sent", text_of(line.substr(0, line.find(' '))) + "  …");
   set_state(slot, "sent");
@@ -206,6 +209,7 @@ void Control::stopAll() {
 }
 
 std::vector<Point> Control::goals_at(const Point& place) const {
+  if (view_only()) return {};
   const BarButton& button = bar_.buttons[slot_index("goto")];
   double spacing = 0.0;
   for (const std::string& name : button.robots)
@@ -216,7 +220,9 @@ std::vector<Point> Control::goals_at(const Point& place) const {
   return spread(place, button.robots.size(), spacing + kGap);
 }
 
-bool Control::goto_is_held() const { return bar_.buttons[slot_index("goto")].touch == Touch::place_held; }
+bool Control::goto_is_held() const {
+  return !view_only() && bar_.buttons[slot_index("goto")].touch == Touch::place_held;
+}
 
 void Control::ask_for_place(const BarButton& button) {
   const QString how =
@@ -226,6 +232,7 @@ void Control::ask_for_place(const BarButton& button) {
 }
 
 void Control::go_to(const Point& place, std::optional<double> z, bool held) {
+  if (view_only()) return;
   const BarButton button = bar_.buttons[slot_index("goto")];
   if (selection_.empty() && !aiming_) return mark_.choose(place, z);  // There is no other action at a place.
   if (goto_is_held() && !held) return ask_for_place(button);
@@ -289,35 +296,37 @@ struct Control::KeyRow {
   int key{};
   int with{};      ///< Of Shift and Ctrl, those that must be down.
   bool repeats{};  ///< It acts again while it is held.
+  bool views{};    ///< It changes the view alone.
   void (*act)(Control& control){};
 };
 
 std::span<const Control::KeyRow> Control::keys() {
   static constexpr std::array kKeys{
-      KeyRow{Qt::Key_Up, 0, true, [](Control& c) { c.move_selection(-1); }},
-      KeyRow{Qt::Key_Down, 0, true, [](Control& c) { c.move_selection(1); }},
-      KeyRow{Qt::Key_Left, 0, true, [](Control& c) { c.cameras_.step(-1); }},
-      KeyRow{Qt::Key_Right, 0, true, [](Control& c) { c.cameras_.step(1); }},
-      KeyRow{Qt::Key_Tab, 0, false, [](Control& c) { c.attention_.show_next(); }},
-      KeyRow{Qt::Key_L, Qt::ControlModifier, false,
+      KeyRow{Qt::Key_Up, 0, true, true, [](Control& c) { c.move_selection(-1); }},
+      KeyRow{Qt::Key_Down, 0, true, true, [](Control& c) { c.move_selection(1); }},
+      KeyRow{Qt::Key_Left, 0, true, true, [](Control& c) { c.cameras_.step(-1); }},
+      KeyRow{Qt::Key_Right, 0, true, true, [](Control& c) { c.cameras_.step(1); }},
+      KeyRow{Qt::Key_Tab, 0, false, true, [](Control& c) { c.attention_.show_next(); }},
+      KeyRow{Qt::Key_L, Qt::ControlModifier, false, true,
              [](Control&) { Theme::instance().set_light(!Theme::instance().light()); }},
-      KeyRow{Qt::Key_K, Qt::ControlModifier, false, [](Control& c) { c.command_line_.set_open(true); }},
-      KeyRow{Qt::Key_Colon, 0, false, [](Control& c) { c.command_line_.set_open(true); }},
-      KeyRow{Qt::Key_V, 0, false, [](Control& c) { c.set_solid(!c.solid_); }},
-      KeyRow{Qt::Key_F, 0, false, [](Control& c) { emit c.follow_toggled(); }},
-      KeyRow{Qt::Key_PageUp, 0, false, [](Control& c) { emit c.cut_moved(1); }},
-      KeyRow{Qt::Key_PageDown, 0, false, [](Control& c) { emit c.cut_moved(-1); }},
-      KeyRow{Qt::Key_I, 0, false, [](Control& c) { c.details_.set_open(!c.details_.is_open()); }},
-      KeyRow{Qt::Key_C, 0, false,
+      KeyRow{Qt::Key_K, Qt::ControlModifier, false, false,
+             [](Control& c) { c.command_line_.set_open(true); }},
+      KeyRow{Qt::Key_Colon, 0, false, false, [](Control& c) { c.command_line_.set_open(true); }},
+      KeyRow{Qt::Key_V, 0, false, true, [](Control& c) { c.set_solid(!c.solid_); }},
+      KeyRow{Qt::Key_F, 0, false, true, [](Control& c) { emit c.follow_toggled(); }},
+      KeyRow{Qt::Key_PageUp, 0, false, true, [](Control& c) { emit c.cut_moved(1); }},
+      KeyRow{Qt::Key_PageDown, 0, false, true, [](Control& c) { emit c.cut_moved(-1); }},
+      KeyRow{Qt::Key_I, 0, false, false, [](Control& c) { c.details_.set_open(!c.details_.is_open()); }},
+      KeyRow{Qt::Key_C, 0, false, false,
              [](Control& c) {
                const bool shown = c.details_.is_open() && c.details_.camera_on();
                c.details_.set_camera_on(!shown);
                if (!shown) c.details_.set_open(true);
              }},
-      KeyRow{Qt::Key_Return, 0, false, [](Control& c) { c.confirm(); }},
-      KeyRow{Qt::Key_Enter, 0, false, [](Control& c) { c.confirm(); }},
-      KeyRow{Qt::Key_Escape, 0, false, [](Control& c) { c.take_back(); }},
-      KeyRow{Qt::Key_E, Qt::ShiftModifier, false, [](Control& c) { c.pend_override(); }},
+      KeyRow{Qt::Key_Return, 0, false, false, [](Control& c) { c.confirm(); }},
+      KeyRow{Qt::Key_Enter, 0, false, false, [](Control& c) { c.confirm(); }},
+      KeyRow{Qt::Key_Escape, 0, false, true, [](Control& c) { c.take_back(); }},
+      KeyRow{Qt::Key_E, Qt::ShiftModifier, false, false, [](Control& c) { c.pend_override(); }},
   };
   return kKeys;
 }
@@ -338,11 +347,12 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
   for (const KeyRow& row : keys()) {
     const int wanted = row.with & Qt::ControlModifier;
     if (row.key != key || command != wanted || (row.with & ~modifiers) != 0) continue;
-    if (repeated && !row.repeats) return false;
+    if ((repeated && !row.repeats) || (view_only() && !row.views)) return false;
     row.act(*this);
     return true;
   }
   if (repeated || command != 0) return false;
+  if (view_only()) return press_digit(key, scan, shift);
   return tabs_.press_key(key) || press_digit(key, scan, shift) || press_letter(key, place, alone);
 }
 

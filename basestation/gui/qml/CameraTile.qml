@@ -61,7 +61,7 @@ Rectangle {
         width: picture.width - 2 * Theme.mm
         spacing: 1 * Theme.mm
         Glyph {
-            visible: tile.shape !== "" && !tile.asks
+            visible: tile.shape !== "" && !tile.asks && picture.height > 20 * Theme.mm
             anchors.horizontalCenter: parent.horizontalCenter
             width: 4.5 * Theme.mm
             height: width

@@ -12,7 +12,7 @@ Item {
     readonly property double gap: Math.round(1.5 * Theme.mm)
     // The picture has 4:3, and the thumbnails at least two columns.
     readonly property double sharpWidth: Math.floor(upright ? width - 2 * gap : Math.min((body.height - line) * 4 / 3, width - 82 * Theme.mm))
-    readonly property double sharpHeight: Math.floor(Math.min(sharpWidth * 0.75 + line, body.height))
+    readonly property double sharpHeight: Math.floor(Math.min(sharpWidth * 0.75 + line, (upright ? 0.4 : 1) * body.height))
     readonly property double line: 10.5 * Theme.mm
     readonly property size tileSize: grid.tileFor(grid.count, tiles.width, tiles.height, Theme.mm)
     Component.onCompleted: grid.watch(true)

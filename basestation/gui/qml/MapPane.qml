@@ -131,21 +131,24 @@ Rectangle {
             visible: !pane.control.solid
             anchors.right: parent.right
             spacing: 1 * Theme.mm
+            layoutDirection: Qt.RightToLeft
+            Wide {
+                objectName: "areaToggle"
+                visible: !pane.control.viewOnly
+                active: pane.control.area.active
+                text: "area"
+                onFired: pane.control.area.active = !pane.control.area.active
+            }
             Wide {
                 objectName: "receptionToggle"
                 active: map.reception
                 text: "signal"
                 onFired: map.reception = !map.reception
             }
-            Wide {
-                objectName: "areaToggle"
-                active: pane.control.area.active
-                text: "area"
-                onFired: pane.control.area.active = !pane.control.area.active
-            }
         }
         Wide {
             objectName: "markToggle"
+            visible: !pane.control.viewOnly
             anchors.right: parent.right
             active: pane.control.mark.active
             text: "mark"
