@@ -23,7 +23,7 @@ const std::set<QString> kLow{
     "commandClose", "commandField", "proposal",      "cure",          "closeDetails",    "fitAll",
     "solidToggle",  "cutToggle",    "followToggle",  "areaToggle",    "zoomIn",          "zoomOut",
     "logWarnings",  "logSelected",  "logExport",     "logTextInput",  "receptionToggle", "hearingToggle",
-    "see",          "later",        "markToggle",    "cameraOn",      "cameraOff"};
+    "see",          "later",        "markToggle",    "headingToggle", "cameraOn",        "cameraOff"};
 /// Texts that may be cut off: they are whole in another place, which is beside them.
 const std::map<QString, QString> kCut{{"budget", "the command net, with all that was not sent"}};
 

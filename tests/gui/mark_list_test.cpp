@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,6 +21,42 @@ const Target* target(const MarkList& marks, const std::string& robot) {
   for (const Target& next : marks.targets)
     if (next.robot == robot) return &next;
   return nullptr;
+}
+
+TEST(Camera, ATurnedOneShowsADirectionUpAndZoomsAndPansAsTheFingerDoes) {
+  Camera camera{.x = 3, .y = 4, .scale = 20, .width = 800, .height = 400};
+  camera.look_along(2.5);
+  const Point middle = camera.to_screen(3, 4), ahead = camera.to_screen(3 + std::cos(2.5), 4 + std::sin(2.5));
+  EXPECT_NEAR(ahead.x, middle.x, 1e-9);
+  EXPECT_NEAR(ahead.y, middle.y - 20, 1e-9);
+  const Point there = camera.to_map(130, 70), back = camera.to_screen(there.x, there.y);
+  EXPECT_NEAR(back.x, 130, 1e-9);
+  EXPECT_NEAR(back.y, 70, 1e-9);
+  camera.zoom(1.7, 130, 70);
+  EXPECT_NEAR(camera.to_screen(there.x, there.y).x, 130, 1e-9);
+  camera.pan(25, -10);
+  EXPECT_NEAR(camera.to_screen(there.x, there.y).x, 155, 1e-9);
+  EXPECT_NEAR(camera.to_screen(there.x, there.y).y, 60, 1e-9);
+  camera.place({8, 9}, 40, 50);
+  EXPECT_NEAR(camera.to_screen(8, 9).x, 40, 1e-9);
+  EXPECT_NEAR(camera.to_screen(8, 9).y, 50, 1e-9);
+  camera.fit({0, 0}, {10, 10}, 0);
+  EXPECT_EQ(camera.turn, 0.0) << "all of the map is shown with north up";
+}
+
+TEST(Camera, BodiesTurnWithTheMap) {
+  station::World world;
+  world.robots = {robot("r1", 10, 0)};
+  world.robots[0].yaw = 2.5F;
+  MarkScene scene = scene_of(world);
+  scene.camera.look_along(2.5);
+  const MarkList marks = marks_of(scene);
+  const Point at = target(marks, "r1")->at;
+  const auto wedge =
+      std::ranges::find_if(marks.shapes, [](const Shape& shape) { return shape.points.size() == 3; });
+  ASSERT_NE(wedge, marks.shapes.end());
+  EXPECT_NEAR(wedge->points[0].x, at.x, 1e-6);
+  EXPECT_LT(wedge->points[0].y, at.y - 9) << "its heading is up";
 }
 
 TEST(Camera, ProjectsThereAndBack) {

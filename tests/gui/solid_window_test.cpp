@@ -195,10 +195,10 @@ TEST_F(SolidWindow, AllThatIsShownFillsTheViewAndStaysInIt) {
 }
 
 TEST_F(SolidWindow, AFollowedRobotStaysInTheMiddleUntilTheMapIsMoved) {
-  solid().toggleFollow();
+  control.follow()->toggle();
   EXPECT_EQ(control.outcome_kind(), "refused") << "none is selected";
   control.select("r1", false);
-  solid().toggleFollow();
+  control.follow()->toggle();
   EXPECT_EQ(solid().followed(), "r1");
   station::World world = ten_robots();
   for (int i = 0; i < 3; ++i) {

@@ -57,6 +57,10 @@ Control::Control(CommandSink& sink, Orders orders, QObject* parent)
   connect(&drive_, &DriveControl::changed, &tabs_, [this] {
     if (drive_.driving()) tabs_.photos()->close();
   });
+  connect(&drive_, &DriveControl::changed, &follow_, &MapFollow::refresh_drive);
+  connect(&follow_, &MapFollow::drive_changed, this, [this](bool driving) {
+    if (driving && tabs_.open() == "cameras") tabs_.close();
+  });
   connect(&tabs_, &TabState::network_changed, &cameras_, &CameraGrid::refresh);
   connect(&tabs_, &TabState::findings_changed, this, &Control::stairs_shown);
   connect(this, &Control::shown, this, &Control::stairs_shown);

@@ -21,6 +21,7 @@
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/detail_list.hpp"
 #include "basestation/gui/bridge/drive_control.hpp"
+#include "basestation/gui/bridge/map_follow.hpp"
 #include "basestation/gui/bridge/mark_tool.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
 #include "basestation/gui/bridge/stairs_offer.hpp"
@@ -57,6 +58,7 @@ class Control : public QObject {
   Q_PROPERTY(adit::gui::CameraFeeds* feeds READ feeds CONSTANT)
   Q_PROPERTY(adit::gui::CameraGrid* cameras READ cameras CONSTANT)
   Q_PROPERTY(adit::gui::DriveControl* drive READ drive CONSTANT)
+  Q_PROPERTY(adit::gui::MapFollow* follow READ follow CONSTANT)
   Q_PROPERTY(adit::gui::CommandLine* commandLine READ command_line CONSTANT)
   Q_PROPERTY(QString stopText READ stop_text NOTIFY shown)
   Q_PROPERTY(QString stopTextShort READ stop_text_short NOTIFY shown)
@@ -172,6 +174,7 @@ class Control : public QObject {
   AttentionList* attention() { return &attention_; }
   DetailList* details() { return &details_; }
   DriveControl* drive() { return &drive_; }
+  MapFollow* follow() { return &follow_; }
   CommandLine* command_line() { return &command_line_; }
   QString stop_text() const;
   QString stop_text_short() const;  ///< Counts instead of names.
@@ -204,7 +207,7 @@ class Control : public QObject {
   void orders_dropped();  ///< A finger that is down on the map sends nothing any more.
   void solid_changed();
   void cut_moved(int steps);  ///< The height above which the map is not shown.
-  void follow_toggled();      ///< The map in 3D keeps the selected robot in its middle, or no longer.
+  void zoomed(double factor);
   void aiming_changed();
   void reasons_open_changed();
 
@@ -262,6 +265,7 @@ class Control : public QObject {
   DetailList details_{*this};
   CameraGrid cameras_{*this};
   DriveControl drive_{*this};
+  MapFollow follow_{*this};
   CommandLine command_line_{*this};
   std::uint64_t last_notice_{};  ///< The newest one that was shown.
   bool catch_up_{true};          ///< The next snapshot has notices that did not come by themselves.

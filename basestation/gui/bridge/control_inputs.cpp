@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kDoneShownMs = 1000, kRefusedShownMs = 8000;
 constexpr int kConfirmMs = 3000;
+constexpr double kZoomStep = 1.25;
 constexpr double kGap = 0.5;  // Between robots that are sent to one place, m.
 
 bool is_modifier(int key) {
@@ -313,7 +314,11 @@ std::span<const Control::KeyRow> Control::keys() {
              [](Control& c) { c.command_line_.set_open(true); }},
       KeyRow{Qt::Key_Colon, 0, false, false, [](Control& c) { c.command_line_.set_open(true); }},
       KeyRow{Qt::Key_V, 0, false, true, [](Control& c) { c.set_solid(!c.solid_); }},
-      KeyRow{Qt::Key_F, 0, false, true, [](Control& c) { emit c.follow_toggled(); }},
+      KeyRow{Qt::Key_F, 0, false, true, [](Control& c) { c.follow_.toggle(); }},
+      KeyRow{Qt::Key_U, 0, false, true, [](Control& c) { c.follow_.toggleHeading(); }},
+      KeyRow{Qt::Key_Plus, 0, true, true, [](Control& c) { emit c.zoomed(kZoomStep); }},
+      KeyRow{Qt::Key_Equal, 0, true, true, [](Control& c) { emit c.zoomed(kZoomStep); }},
+      KeyRow{Qt::Key_Minus, 0, true, true, [](Control& c) { emit c.zoomed(1.0 / kZoomStep); }},
       KeyRow{Qt::Key_PageUp, 0, false, true, [](Control& c) { emit c.cut_moved(1); }},
       KeyRow{Qt::Key_PageDown, 0, false, true, [](Control& c) { emit c.cut_moved(-1); }},
       KeyRow{Qt::Key_I, 0, false, false, [](Control& c) { c.details_.set_open(!c.details_.is_open()); }},

@@ -51,6 +51,7 @@ Window {
             id: map
             control: window.control
             covered: panel.open === "" ? 0 : panel.height - panel.strip
+            coveredRight: picture.visible ? picture.width + 2 * Theme.mm : 0
             anchors.left: fleet.right
             anchors.right: details.visible ? details.left : parent.right
             anchors.top: attention.bottom
@@ -103,6 +104,7 @@ Window {
             anchors.bottom: outcome.top
         }
         DriveCamera {
+            id: picture
             drive: window.control.drive
             feeds: window.control.feeds
             visible: window.control.drive.driving && window.control.drive.camera !== ""

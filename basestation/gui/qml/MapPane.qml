@@ -6,6 +6,7 @@ Rectangle {
     id: pane
     required property Control control
     property double covered: 0
+    property double coveredRight: 0
     color: Theme.ground
     border.width: control.aiming || control.mark.active ? 3 : 0
     border.color: Theme.goal
@@ -19,6 +20,7 @@ Rectangle {
         anchors.margins: pane.border.width
         control: pane.control
         covered: pane.covered
+        coveredRight: pane.coveredRight
         visible: !pane.control.solid
     }
     MapView3D {
@@ -30,12 +32,13 @@ Rectangle {
         anchors.margins: pane.border.width
         control: pane.control
         covered: pane.covered
+        coveredRight: pane.coveredRight
         visible: pane.control.solid
     }
     Connections {
         target: pane.control
         function onCut_moved(steps) { pane.control.solid ? solid.moveCut(steps) : map.moveFloor(steps) }
-        function onFollow_toggled() { if (pane.control.solid) solid.toggleFollow() }
+        function onZoomed(factor) { pane.control.solid ? solid.zoomBy(factor) : map.zoomBy(factor) }
     }
     PlainLabel {
         visible: pane.control.solid ? solid.empty : map.empty
@@ -83,6 +86,7 @@ Rectangle {
         anchors.right: parent.right
         anchors.top: parent.top
         anchors.margins: 2 * Theme.mm
+        anchors.rightMargin: 2 * Theme.mm + pane.coveredRight
         spacing: 2 * Theme.mm
         Wide {
             objectName: "fitAll"
@@ -107,10 +111,18 @@ Rectangle {
         Wide {
             objectName: "followToggle"
             anchors.right: parent.right
-            visible: pane.control.solid
-            active: solid.followed !== ""
+            active: pane.control.follow.robot !== ""
             text: "follow  f"
-            onFired: solid.toggleFollow()
+            onFired: pane.control.follow.toggle()
+        }
+        Wide {
+            objectName: "headingToggle"
+            anchors.right: parent.right
+            visible: pane.control.follow.robot !== "" || pane.control.follow.headingUp
+            active: pane.control.follow.headingUp
+            text: "ahead ↑  u"
+            spoken: "the heading of the robot is up"
+            onFired: pane.control.follow.toggleHeading()
         }
         Row {
             visible: (pane.control.solid ? solid.floor : map.floor) !== ""

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "basestation/gui/scene/mark_list.hpp"
 #include "basestation/gui/scene/theme.hpp"
@@ -81,16 +82,22 @@ void MapItem2D::show_grid(const SignalGrid* grid) {
   update();
 }
 
-void MapItem2D::draw_reception(QPainter& painter) const {
+QRectF MapItem2D::seen() const {
+  if (camera_.turn == 0.0) return {0, 0, width(), height()};
+  const double side = std::hypot(width(), height());
+  return {(width() - side) / 2, (height() - side) / 2, side, side};
+}
+
+void MapItem2D::draw_reception(QPainter& painter, const Camera& camera) const {
   constexpr std::array kOpacity{0.8, 0.8, 0.4};  // Patterns leave most of the map free.
-  const QRectF view(0, 0, width(), height());
+  const QRectF view = seen();
   const Theme& theme = Theme::instance();
   const std::array brushes{QBrush(theme.of(Token::ok), Qt::Dense6Pattern),
                            QBrush(theme.of(Token::warn), Qt::BDiagPattern), QBrush(theme.of(Token::bad))};
   for (const auto& [place, cell] : grid_->cells()) {
-    const Point low = camera_.to_screen(place.first * SignalGrid::kCell, place.second * SignalGrid::kCell);
+    const Point low = camera.to_screen(place.first * SignalGrid::kCell, place.second * SignalGrid::kCell);
     const Point high =
-        camera_.to_screen((place.first + 1) * SignalGrid::kCell, (place.second + 1) * SignalGrid::kCell);
+        camera.to_screen((place.first + 1) * SignalGrid::kCell, (place.second + 1) * SignalGrid::kCell);
     const QRectF target(QPointF(std::round(low.x), std::round(high.y)),
                         QPointF(std::round(high.x), std::round(low.y)));
     if (!target.intersects(view)) continue;
@@ -101,20 +108,21 @@ void MapItem2D::draw_reception(QPainter& painter) const {
   painter.setOpacity(1.0);
 }
 
-void MapItem2D::draw_grid(QPainter& painter) const {
-  const double step = bar_length(camera_.scale, 160.0);
-  if (step * camera_.scale < 8.0) return;
+void MapItem2D::draw_grid(QPainter& painter, const Camera& camera) const {
+  const double step = bar_length(camera.scale, 160.0);
+  if (step * camera.scale < 8.0) return;
   QColor colour = Theme::instance().edge();
   colour.setAlphaF(0.35F);
   painter.setPen(QPen(colour, 1.0));
-  const Point low = camera_.to_map(0, camera_.height), high = camera_.to_map(camera_.width, 0);
+  const QRectF view = seen();
+  const Point low = camera.to_map(view.left(), view.bottom()), high = camera.to_map(view.right(), view.top());
   for (double x = std::ceil(low.x / step) * step; x < high.x; x += step) {
-    const double at = std::round(camera_.to_screen(x, 0).x) + 0.5;
-    painter.drawLine(QPointF(at, 0), QPointF(at, camera_.height));
+    const double at = std::round(camera.to_screen(x, 0).x) + 0.5;
+    painter.drawLine(QPointF(at, view.top()), QPointF(at, view.bottom()));
   }
   for (double y = std::ceil(low.y / step) * step; y < high.y; y += step) {
-    const double at = std::round(camera_.to_screen(0, y).y) + 0.5;
-    painter.drawLine(QPointF(0, at), QPointF(camera_.width, at));
+    const double at = std::round(camera.to_screen(0, y).y) + 0.5;
+    painter.drawLine(QPointF(view.left(), at), QPointF(view.right(), at));
   }
 }
 
@@ -126,16 +134,24 @@ void MapItem2D::paint(QPainter* painter) {
   pending_ = false;
   QElapsedTimer clock;
   clock.start();
+  // Everything is drawn with north up, and turned by the painter.
+  Camera camera = camera_;
+  camera.set_turn(0.0);
+  const QRectF view = seen();
+  painter->save();
+  painter->translate(width() / 2, height() / 2);
+  painter->rotate(-camera_.turn * 180.0 / std::numbers::pi);
+  painter->translate(-width() / 2, -height() / 2);
   const double side = map_ ? MapTile::kSide * map_->resolution : 0.0;
   if (side > 0.0 && side < 1e4) {
     painter->setRenderHint(QPainter::SmoothPixmapTransform, camera_.scale * map_->resolution < 1.0);
     for (const auto& [place, tile] : map_->tiles) {
       // Edges are rounded to pixels, so that neighbours leave no gap.
-      const Point low = camera_.to_screen(place.first * side, place.second * side);
-      const Point high = camera_.to_screen((place.first + 1) * side, (place.second + 1) * side);
+      const Point low = camera.to_screen(place.first * side, place.second * side);
+      const Point high = camera.to_screen((place.first + 1) * side, (place.second + 1) * side);
       const QRectF target(QPointF(std::round(low.x), std::round(high.y)),
                           QPointF(std::round(high.x), std::round(low.y)));
-      if (!target.intersects(QRectF(0, 0, width(), height()))) continue;
+      if (!target.intersects(view)) continue;
       Picture& picture = pictures_[place];
       if (picture.tile != tile || picture.floor != floor_) {
         // Where another floor is still shown, the next frame is soon enough.
@@ -147,8 +163,9 @@ void MapItem2D::paint(QPainter* painter) {
       painter->drawImage(target, picture.image);
     }
   }
-  if (grid_) draw_reception(*painter);
-  draw_grid(*painter);
+  if (grid_) draw_reception(*painter, camera);
+  draw_grid(*painter, camera);
+  painter->restore();
   if (pending_)
     QMetaObject::invokeMethod(
         this, [this] { update(); }, Qt::QueuedConnection);

@@ -44,8 +44,11 @@ class MapItem2D : public QQuickPaintedItem {
     std::optional<Floor> floor{};
   };
 
-  void draw_grid(QPainter& painter) const;
-  void draw_reception(QPainter& painter) const;
+  /// The part that is in view before it is turned, pixels.
+  QRectF seen() const;
+  /// `camera`: with north up.
+  void draw_grid(QPainter& painter, const Camera& camera) const;
+  void draw_reception(QPainter& painter, const Camera& camera) const;
 
   std::shared_ptr<const station::TileMap> map_{};
   std::map<std::pair<int, int>, Picture> pictures_{};

@@ -9,17 +9,23 @@
 #include "basestation/gui/scene/theme.hpp"
 
 namespace adit::gui {
+namespace {
+
+constexpr double kLeastScale = 8.0;  // Pixels per m, so that a robot can be seen.
+
+}  // namespace
 
 MapView::MapView(QQuickItem* parent)
     : GestureArea(parent), map_(new MapItem2D(this)), marks_(new MarkPainter(this)) {
   setClip(true);
+  connect(this, &MapView::covered_changed, marks_, [this] { marks_->set_inset(covered_right_); });
 }
 
 void MapView::set_control(Control* control) {
   if (control == control_) return;
   if (control_)
     control_->disconnect(this), control_->area()->disconnect(this), control_->mark()->disconnect(this),
-        control_->tabs()->disconnect(this);
+        control_->tabs()->disconnect(this), control_->follow()->disconnect(this);
   control_ = control;
   if (control_) {
     connect(control_, &Control::shown, this, &MapView::refresh);
@@ -28,6 +34,8 @@ void MapView::set_control(Control* control) {
     connect(control_->tabs(), &TabState::findings_changed, this, &MapView::refresh);
     connect(control_->tabs(), &TabState::network_changed, this, &MapView::measure_reception);
     connect(control_, &Control::look_at, this, &MapView::look_at);
+    connect(control_->follow(), &MapFollow::changed, this, &MapView::follow_changed);
+    connect(control_->follow(), &MapFollow::drive_changed, this, &MapView::drive_changed);
     connect(control_, &Control::orders_dropped, this, [this] { drop_press(); });
     connect(control_, &Control::map_changed, this, [this] {
       map_->show(control_->map());
@@ -60,6 +68,7 @@ double MapView::slop() const { return kSlopMm * Theme::instance().mm(); }
 void MapView::refresh() {
   if (!control_) return;
   if (fitting_ && !busy() && !aiming() && !drawing()) fit(false);
+  move_with_robot();
   if (!busy() && !aiming()) {  // The place under a finger stays on the floor where it was pressed.
     floors_.show(control_->world(), control_->trails());
     show_floor();
@@ -93,6 +102,10 @@ void MapView::refresh() {
 void MapView::refresh_camera() {
   map_->look(camera_);
   refresh();
+  report_place();
+}
+
+void MapView::report_place() {
   if (!control_ || camera_.width < 10) return;
   std::optional<station::LookedAt> place;  // Who sees all of the map looks at no place of it.
   if (!fitting_)
@@ -143,7 +156,53 @@ void MapView::fit(bool at_once) {
   map_->look(camera_);
 }
 
+void MapView::follow_changed() {
+  const MapFollow& follow = *control_->follow();
+  if (!follow.robot().isEmpty()) {
+    set_fitting(false);
+    camera_.scale = std::max(camera_.scale, kLeastScale);
+  }
+  if (!follow.heading_up()) camera_.set_turn(0.0);
+  if (fitting_) fit(true);
+  refresh_camera();
+}
+
+void MapView::drive_changed(bool driving) {
+  constexpr double kDrivenMm = 12.0;  // Length of the robot on the screen.
+  if (!driving) {
+    camera_.scale = before_drive_.scale;
+    set_fitting(before_drive_.fitting);
+    return;
+  }
+  before_drive_ = {fitting_, camera_.scale};
+  if (const station::Robot* robot = control_->follow()->target())
+    camera_.scale = std::max(camera_.scale, kDrivenMm * Theme::instance().mm() / extent_of(*robot));
+}
+
+Point MapView::follow_place() const {
+  constexpr double kBehind = 0.64;  // Share of the height above a robot whose heading is up.
+  return {(camera_.width - covered_right_) / 2,
+          (camera_.height - covered_) * (control_->follow()->heading_up() ? kBehind : 0.5)};
+}
+
+void MapView::move_with_robot() {
+  constexpr double kMoved = 0.5;  // Pixels that can be seen.
+  const station::Robot* robot = control_->follow()->target();
+  if (!robot || busy() || aiming() || drawing() || camera_.width < 10) return;
+  Camera next = camera_;
+  if (control_->follow()->heading_up()) next.look_along(robot->yaw);
+  const Point to = follow_place(), from = camera_.to_screen(robot->x, robot->y);
+  next.place({robot->x, robot->y}, to.x, to.y);
+  const double turned = std::abs(next.turn - camera_.turn) * std::hypot(camera_.width, camera_.height) / 2;
+  if (std::hypot(to.x - from.x, to.y - from.y) < kMoved && turned < kMoved) return;
+  camera_ = next;
+  map_->look(camera_);
+  report_place();
+}
+
 void MapView::fitAll() {
+  if (control_) control_->follow()->end();
+  if (control_) control_->follow()->end_heading();
   set_fitting(true);
   fit(true);
   refresh_camera();
@@ -228,17 +287,18 @@ void MapView::toggleFloor() {
 }
 
 void MapView::look_at(double x, double y, double z) {
-  constexpr double kLeastScale = 8.0;  // Pixels per m, so that the robot can be seen.
-  if (busy() || aiming()) return;      // The place under a finger stays there.
+  if (busy() || aiming()) return;                // The place under a finger stays there.
+  if (control_->follow()->is_driving()) return;  // Who drives sees the driven robot.
+  control_->follow()->end();
   set_fitting(false);
   choice_.show_height(z, floors_);
-  camera_.x = x;
   camera_.scale = std::max(camera_.scale, kLeastScale);
-  camera_.y = y - covered_ / 2 / camera_.scale;
+  camera_.place({x, y}, camera_.width / 2, (camera_.height - covered_) / 2);
   refresh_camera();
 }
 
 void MapView::pan(const QPointF& by) {
+  if (control_) control_->follow()->end();
   set_fitting(false);
   camera_.pan(by.x(), by.y());
   refresh_camera();
@@ -246,7 +306,9 @@ void MapView::pan(const QPointF& by) {
 
 void MapView::zoom(double factor, const QPointF& about) {
   set_fitting(false);
-  camera_.zoom(factor, about.x(), about.y());
+  const bool follows = control_ && control_->follow()->target();
+  const Point fixed = follows ? follow_place() : Point{about.x(), about.y()};
+  camera_.zoom(factor, fixed.x, fixed.y);
   refresh_camera();
 }
 

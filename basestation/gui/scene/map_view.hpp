@@ -26,6 +26,8 @@ class MapView : public adit::gui::GestureArea {
   Q_PROPERTY(QString receptionLegend READ reception_legend NOTIFY reception_changed)
   /// Height at the lower edge that something else covers, pixels.
   Q_PROPERTY(double covered MEMBER covered_ NOTIFY covered_changed)
+  /// Width at the right edge that something else covers, pixels. A robot that is followed stays beside it.
+  Q_PROPERTY(double coveredRight MEMBER covered_right_ NOTIFY covered_changed)
 
  public:
   explicit MapView(QQuickItem* parent = nullptr);
@@ -78,6 +80,13 @@ class MapView : public adit::gui::GestureArea {
   void zoom(double factor, const QPointF& about) override;
 
  private:
+  void follow_changed();
+  void drive_changed(bool driving);
+  /// Where a robot that is followed is on the screen, pixels.
+  Point follow_place() const;
+  /// Keeps the robot that is followed at its place of the screen.
+  void move_with_robot();
+  void report_place();                         ///< What of the map is in view, to the station.
   void look_at(double x, double y, double z);  ///< Brings a place of the map frame, m, into the middle.
   void refresh();                              ///< The marks.
   void refresh_camera();                       ///< The map and the marks.
@@ -94,7 +103,11 @@ class MapView : public adit::gui::GestureArea {
   MarkPainter* marks_{};
   Camera camera_{};
   bool fitting_{true};
-  double covered_{0.0};
+  double covered_{0.0}, covered_right_{0.0};
+  struct {
+    bool fitting{};
+    double scale{};
+  } before_drive_{};  ///< The view before a robot was driven.
   SignalGrid grid_{};
   Floors floors_{};
   FloorChoice choice_{};

@@ -4,6 +4,8 @@
 #include <QPainter>
 #include <QTimerEvent>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "basestation/gui/scene/height_legend.hpp"
 #include "basestation/gui/scene/layer_marks.hpp"
@@ -43,12 +45,14 @@ void VoxelItem::paint(QPainter* painter) {
 MapView3D::MapView3D(QQuickItem* parent)
     : GestureArea(parent), voxels_(new VoxelItem(this)), marks_(new MarkPainter(this)) {
   setClip(true);
+  connect(this, &MapView3D::covered_changed, marks_, [this] { marks_->set_inset(covered_right_); });
 }
 
 void MapView3D::set_control(Control* control) {
   if (control == control_) return;
   if (control_)
-    control_->disconnect(this), control_->mark()->disconnect(this), control_->tabs()->disconnect(this);
+    control_->disconnect(this), control_->mark()->disconnect(this), control_->tabs()->disconnect(this),
+        control_->follow()->disconnect(this);
   control_ = control;
   if (control_) {
     connect(control_, &Control::shown, this, [this] {
@@ -58,6 +62,8 @@ void MapView3D::set_control(Control* control) {
     connect(control_->tabs(), &TabState::findings_changed, this, &MapView3D::refresh);
     connect(control_, &Control::orders_dropped, this, [this] { drop_press(); });
     connect(control_, &Control::look_at, this, &MapView3D::look_at);
+    connect(control_->follow(), &MapFollow::changed, this, &MapView3D::follow_changed);
+    connect(control_->follow(), &MapFollow::drive_changed, this, &MapView3D::drive_changed);
     connect(control_, &Control::map_changed, this, [this] {
       if (isVisible()) show_map();
     });
@@ -178,38 +184,43 @@ void MapView3D::fit(bool at_once) {
 
 void MapView3D::fitAll() {
   if (empty()) return;
-  follow({});
+  control_->follow()->end();
+  control_->follow()->end_heading();
   set_fitting(true);
   fit(true);
   look(Detail3::fine);
 }
 
-void MapView3D::follow(const QString& robot) {
-  if (robot == followed_) return;
-  followed_ = robot;
-  emit followed_changed();
+void MapView3D::follow_changed() {
+  if (!followed().isEmpty()) set_fitting(false);
+  if (!isVisible() || move_with_robot()) return;
+  if (fitting_) fit(true);
+  look(Detail3::fine);
 }
 
-void MapView3D::toggleFollow() {
-  if (!control_) return;
-  if (!followed_.isEmpty()) return follow({});
-  if (control_->selection().empty()) return control_->say("Follow: select a robot", "refused");
-  set_fitting(false);
-  follow(QString::fromStdString(control_->selection().front()));
-  if (!move_with_robot()) refresh();
+void MapView3D::drive_changed(bool driving) {
+  constexpr double kNear = 12.0;  // m
+  if (!driving) {
+    camera_.distance = before_drive_.distance;
+    set_fitting(before_drive_.fitting);
+    return;
+  }
+  before_drive_ = {fitting_, camera_.distance};
+  camera_.distance = std::min(camera_.distance, kNear);
 }
 
 bool MapView3D::move_with_robot() {
   constexpr double kMoved = 0.5;  // Pixels that can be seen.
-  if (followed_.isEmpty() || busy() || aiming()) return false;
-  const station::Robot* robot = control_->world().robot(followed_.toStdString());
-  if (!robot) return follow({}), false;
-  if (!robot->located || !drawable(robot->x, robot->y) || !(std::abs(robot->z) < 1e5F)) return false;
+  const station::Robot* robot = control_->follow()->target();
+  if (!robot || busy() || aiming()) return false;
   OrbitCamera next = camera_;
+  if (control_->follow()->heading_up()) next.yaw = robot->yaw;
   next.target = {robot->x, robot->y, robot->z};
-  next.pan(0, -covered_ / 2);
+  next.pan(-covered_right_ / 2, -covered_ / 2);
   const Point3 by = next.target - camera_.target;
-  if (std::hypot(by.x, by.y, by.z) * camera_.focal() / camera_.distance < kMoved) return false;
+  const double turned = std::abs(std::remainder(next.yaw - camera_.yaw, 2.0 * std::numbers::pi)) * width();
+  const bool near = next.distance == camera_.distance && turned < kMoved;
+  if (near && std::hypot(by.x, by.y, by.z) * camera_.focal() / camera_.distance < kMoved) return false;
   camera_ = next;
   look(Detail3::moving);
   return true;
@@ -245,15 +256,15 @@ void MapView3D::toggleFloor() {
 }
 
 void MapView3D::look_at(double x, double y, double height) {
-  constexpr double kNearEnough = 15.0;  // m
-  if (busy() || aiming()) return;
+  constexpr double kNearEnough = 15.0;                                 // m
+  if (busy() || aiming() || control_->follow()->is_driving()) return;  // Who drives sees the driven robot.
   double z = std::abs(height) < 1e5 ? height : camera_.target.z;
   if (!(std::abs(height) < 1e5))
     for (const std::string& name : control_->selection())
       if (const station::Robot* robot = control_->world().robot(name); robot && std::abs(robot->z) < 1e5F)
         z = robot->z;
   set_fitting(false);
-  follow({});
+  control_->follow()->end();
   camera_.target = {x, y, z};
   camera_.distance = std::min(camera_.distance, kNearEnough);
   camera_.pan(0, -covered_ / 2);
@@ -317,9 +328,10 @@ void MapView3D::send_aim(const QPointF& at, bool held) {
 void MapView3D::pan(const QPointF& by) {
   set_fitting(false);
   if (pinching() || sliding()) {
-    follow({});
+    control_->follow()->end();
     camera_.pan(by.x(), by.y());
   } else {
+    if (by.x() != 0.0) control_->follow()->end_heading();
     camera_.orbit(by.x(), by.y());
   }
   look(Detail3::moving);

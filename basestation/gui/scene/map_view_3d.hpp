@@ -46,13 +46,13 @@ class MapView3D : public adit::gui::GestureArea {
   Q_PROPERTY(bool empty READ empty NOTIFY content_changed)
   /// Height at the lower edge that something else covers, pixels.
   Q_PROPERTY(double covered MEMBER covered_ NOTIFY covered_changed)
+  /// Width at the right edge that something else covers, pixels. A robot that is followed stays beside it.
+  Q_PROPERTY(double coveredRight MEMBER covered_right_ NOTIFY covered_changed)
   /// Height above which nothing is shown, m.
   Q_PROPERTY(double cut READ cut NOTIFY cut_changed)
   Q_PROPERTY(bool cutting READ cutting NOTIFY cut_changed)
   /// Whether all that is shown stays in view; ends when the operator moves it.
   Q_PROPERTY(bool fitting READ fitting NOTIFY fitting_changed)
-  /// The robot that stays in the middle; empty: none.
-  Q_PROPERTY(QString followed READ followed NOTIFY followed_changed)
   /// The floor that alone is shown, in words; empty: there are not two.
   Q_PROPERTY(QString floor READ floor NOTIFY floor_changed)
   Q_PROPERTY(bool floorAutomatic READ floor_automatic NOTIFY floor_changed)
@@ -71,7 +71,8 @@ class MapView3D : public adit::gui::GestureArea {
   bool cutting() const { return slice_.high < 1e8; }
   const Slice& slice() const { return slice_; }
   bool fitting() const { return fitting_; }
-  const QString& followed() const { return followed_; }
+  /// The robot that stays in the middle; empty: none.
+  QString followed() const { return control_ ? control_->follow()->robot() : QString(); }
   QString floor() const { return QString::fromStdString(choice_.label()); }
   bool floor_automatic() const { return choice_.kind() == FloorChoice::Kind::automatic; }
   /// Corners of what is shown, map frame, m.
@@ -86,8 +87,6 @@ class MapView3D : public adit::gui::GestureArea {
   Q_INVOKABLE void moveCut(int steps);
   /// Shows all heights, or cuts above the robots again.
   Q_INVOKABLE void toggleCut();
-  /// Keeps the selected robot in the middle, or no longer.
-  Q_INVOKABLE void toggleFollow();
   /// Shows the floor so many above alone.
   Q_INVOKABLE void moveFloor(int steps);
   /// Shows the floor of the selected robot alone, or all of them.
@@ -99,7 +98,6 @@ class MapView3D : public adit::gui::GestureArea {
   void cut_changed();
   void covered_changed();
   void fitting_changed();
-  void followed_changed();
   void floor_changed();
 
  protected:
@@ -127,7 +125,8 @@ class MapView3D : public adit::gui::GestureArea {
   double cut_above_robots() const;
   void fit(bool at_once);
   void set_fitting(bool fitting);
-  void follow(const QString& robot);
+  void follow_changed();
+  void drive_changed(bool driving);
   bool move_with_robot();  ///< False: the view stays.
   void show_floor();
 
@@ -138,12 +137,15 @@ class MapView3D : public adit::gui::GestureArea {
   Slice slice_{};
   bool begun_{false};  ///< The first map was shown.
   bool fitting_{true};
-  QString followed_{};
   Floors floors_{};
   FloorChoice choice_{FloorChoice::Kind::all};
   QString floor_said_{};
   std::optional<Floor> floor_{};  ///< As the slice shows it.
-  double covered_{0.0};
+  double covered_{0.0}, covered_right_{0.0};
+  struct {
+    bool fitting{};
+    double distance{};
+  } before_drive_{};  ///< The view before a robot was driven.
   std::vector<Point3> ghosts_{};
   QBasicTimer settled_{};  ///< Runs while the camera moves.
 };

@@ -208,7 +208,7 @@ class Drawer {
     const double half_length = length * camera_.scale * grow / 2,
                  half_width = width * camera_.scale * grow / 2;
     const double yaw = std::isfinite(robot.yaw) ? robot.yaw : 0.0;
-    const double c = std::cos(yaw), s = std::sin(yaw);
+    const double c = std::cos(yaw + camera_.turn), s = std::sin(yaw + camera_.turn);
     // From the body frame (x ahead, y left, pixels) to the screen, whose y points down.
     const auto place = [&](double x, double y) { return Point{at.x + c * x - s * y, at.y - s * x - c * y}; };
     const Token owner = owner_of(robot);

@@ -22,6 +22,11 @@ void MarkPainter::show(MarkList marks, const Camera& camera, bool on_colours) {
   update();
 }
 
+void MarkPainter::set_inset(double right) {
+  inset_ = right;
+  update();
+}
+
 void MarkPainter::draw_shape(QPainter& painter, const Shape& shape) const {
   const Theme& theme = Theme::instance();
   QPolygonF points;
@@ -74,7 +79,7 @@ void MarkPainter::draw_label(QPainter& painter, const MapLabel& label) const {
 void MarkPainter::draw_bar(QPainter& painter) const {
   const Theme& theme = Theme::instance();
   const double length = bar_length(camera_.scale, 180.0), pixels = length * camera_.scale;
-  const double right = width() - 14, y = height() - 14;
+  const double right = width() - inset_ - 14, y = height() - 14;
   painter.setOpacity(1.0);
   QColor ground = theme.ground();
   ground.setAlphaF(0.75F);
@@ -86,11 +91,36 @@ void MarkPainter::draw_bar(QPainter& painter) const {
   draw_label(painter, {.at = {right - pixels / 2, y - 13}, .text = text.toStdString()});
 }
 
+void MarkPainter::draw_north(QPainter& painter) const {
+  if (camera_.turn == 0.0) return;
+  const double mm = Theme::instance().mm(), length = 4.0 * mm;
+  const Point middle{8.0 * mm, 15.0 * mm}, north{-camera_.sin, -camera_.cos};  // Pixels, y down.
+  const auto at = [&](double ahead, double aside) {
+    return Point{middle.x + ahead * north.x - aside * north.y, middle.y + ahead * north.y + aside * north.x};
+  };
+  draw_shape(painter, {.points = circle(middle, 7.0 * mm),
+                       .closed = true,
+                       .line = Token::dim,
+                       .width = 1.0,
+                       .filled = true,
+                       .fill = Token::none,
+                       .fill_opacity = 0.0});
+  draw_shape(painter, {.points = {at(length, 0), at(-length, -0.5 * length), at(-0.5 * length, 0),
+                                  at(-length, 0.5 * length)},
+                       .closed = true,
+                       .line = Token::text,
+                       .width = 1.0,
+                       .filled = true,
+                       .fill = Token::text});
+  draw_label(painter, {.at = at(length + 2.2 * mm, 0), .text = "N"});
+}
+
 void MarkPainter::paint(QPainter* painter) {
   painter->setRenderHint(QPainter::Antialiasing);
   for (const Shape& shape : marks_.shapes) draw_shape(*painter, shape);
   for (const MapLabel& label : marks_.labels) draw_label(*painter, label);
   draw_bar(*painter);
+  draw_north(*painter);
 }
 
 }  // namespace adit::gui

@@ -6,7 +6,7 @@
 
 namespace adit::gui {
 
-/// Draws a list of marks, and the scale bar.
+/// Draws a list of marks, the scale bar, and where north is on a map that is turned.
 class MarkPainter : public QQuickPaintedItem {
   Q_OBJECT
 
@@ -15,6 +15,8 @@ class MarkPainter : public QQuickPaintedItem {
   /// `camera`: for the scale bar. `on_colours`: the map below has colours, from which outlines set lines off,
   /// and a grid of squares as wide as the bar.
   void show(MarkList marks, const Camera& camera, bool on_colours = false);
+  /// Width at the right edge where the scale bar would be covered, pixels.
+  void set_inset(double right);
   const MarkList& marks() const { return marks_; }
   void paint(QPainter* painter) override;
 
@@ -22,10 +24,13 @@ class MarkPainter : public QQuickPaintedItem {
   void draw_shape(QPainter& painter, const Shape& shape) const;
   void draw_label(QPainter& painter, const MapLabel& label) const;
   void draw_bar(QPainter& painter) const;
+  /// An arrow to the north, where it is not up.
+  void draw_north(QPainter& painter) const;
 
   MarkList marks_{};
   Camera camera_{};
   bool on_colours_{false};
+  double inset_{0.0};
 };
 
 }  // namespace adit::gui
