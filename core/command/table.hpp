@@ -64,7 +64,6 @@ inline constexpr std::array<Option, 4> kConvoyOptions{
 inline constexpr std::uint8_t kMaxAreaCorners = 16;         ///< Largest number of corners of an area.
 inline constexpr std::uint8_t kMaxConvoy = 8;               ///< Largest number of robots of a convoy.
 inline constexpr double kMaxConvoyId = 9007199254740992.0;  ///< 2^53: a number holds integers up to here.
-
 constexpr Argument component(std::string_view choices) {
   return {.name = "COMPONENT", .type = Type::name, .what = "a component", .choices = choices};
 }
