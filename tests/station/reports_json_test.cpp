@@ -89,6 +89,7 @@ class ReportDraw {
               text(),
               flag(),
               photo(),
+              std::vector<std::uint32_t>(below(3), count()),
               flag()};
     report.at_robots.resize(below(3));
     for (FoundAtRobot& robot : report.at_robots) robot = {text(), count(), count(), count()};
