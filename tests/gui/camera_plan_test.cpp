@@ -95,10 +95,20 @@ TEST(CameraPlan, WhatDoesNotFitTakesTurns) {
 }
 
 TEST(CameraPlan, RequestsAreBounded) {
-  const CameraPlan plan = Site(60).plan(3);
-  EXPECT_EQ(Site::robots_of(plan, CameraRole::thumbnail).size(), kMaxThumbnails);
+  const Site site(60);
+  const CameraPlan plan = site.plan(3);
+  EXPECT_EQ(Site::robots_of(plan, CameraRole::thumbnail).size(), kMaxInTurns);
   EXPECT_EQ(Site::robots_of(plan, CameraRole::sharp).size(), 1U);
-  EXPECT_EQ(Site::robots_of(plan, CameraRole::waits).size(), 47U);
+  EXPECT_EQ(Site::robots_of(plan, CameraRole::waits).size(), 53U);
+  EXPECT_EQ(Site::robots_of(Site(13).plan(), CameraRole::thumbnail).size(), kMaxThumbnails) << "all of them";
+  // The station looks at 16 cameras at most, and holds those of a turn for some seconds.
+  for (std::size_t turn = 0; turn < 20; ++turn) {
+    std::set<std::string> held{"of the details", "of the drive"};
+    for (const std::size_t each : {turn, turn + 1})
+      for (const PlannedCamera& camera : site.plan(each).cameras)
+        if (camera.rate > 0.0F) held.insert(camera.name.first);
+    EXPECT_LE(held.size(), 16U) << "turn " << turn;
+  }
 }
 
 TEST(CameraPlan, ALinkWithoutRoomRefusesAndIsNamed) {
@@ -106,7 +116,7 @@ TEST(CameraPlan, ALinkWithoutRoomRefusesAndIsNamed) {
   site.net.agents[1].total_out = 12'500.0F;  // All of the bandwidth, and no pictures.
   const CameraPlan plan = site.plan();
   EXPECT_EQ(plan.cameras[1].role, CameraRole::refused);
-  EXPECT_EQ(plan.cameras[1].why, "mesh_100k leaves 0 kbit/s");
+  EXPECT_EQ(plan.cameras[1].why, "link of r2: mesh_100k leaves 0 kbit/s");
   EXPECT_EQ(plan.cameras[2].role, CameraRole::thumbnail);
   site.net.agents[1].classes_out = {{"video", 3'600.0}};
   EXPECT_EQ(site.plan().cameras[1].role, CameraRole::thumbnail) << "what takes the room are pictures";
@@ -133,6 +143,15 @@ TEST(CameraPlan, TheSharpCameraHasALimitedLinkOfItsRobotAlone) {
   site.off.clear();
   site.net = {};
   EXPECT_EQ(site.plan().cameras[1].role, CameraRole::thumbnail) << "the link has room for both";
+}
+
+TEST(CameraPlan, TheLinkOfADrivenRobotIsLeftToTheDriversPicture) {
+  Site site(3, 500e3, "mesh_500k");
+  site.world.robots[1].mode = "smart_joystick";
+  EXPECT_EQ(site.plan().cameras[1].role, CameraRole::waits);
+  EXPECT_EQ(site.plan().cameras[2].role, CameraRole::thumbnail);
+  site.world.robots[1].mode = "waypoint";
+  EXPECT_EQ(site.plan().cameras[1].role, CameraRole::thumbnail);
 }
 
 TEST(CameraPlan, WhatIsOffOrLostOrHasNoCameraIsNotAskedFor) {

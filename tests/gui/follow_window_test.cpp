@@ -104,6 +104,28 @@ TEST_F(FollowWindow, MovingTheMapEndsIt) {
   EXPECT_EQ(control.follow()->robot(), "");
 }
 
+TEST_F(FollowWindow, TwoFingersZoomAndTheRobotStays) {
+  control.select("r1", false);
+  QTest::keyClick(window(), Qt::Key_F);
+  move_r1(6, 1, 0.0F);
+  const QPoint at = on_map(6, 1) + QPoint(20, 60), apart(40, 0);
+  /// From `apart` about the place to `wide`, whose middle is `by` away.
+  const auto pinch = [&](const QPoint& wide, const QPoint& by) {
+    QTest::touchEvent(window(), finger).press(0, at - apart, window()).press(1, at + apart, window());
+    QTest::touchEvent(window(), finger).move(0, at - wide + by, window()).move(1, at + wide + by, window());
+    QTest::touchEvent(window(), finger)
+        .release(0, at - wide + by, window())
+        .release(1, at + wide + by, window());
+    settle();
+  };
+  const double scale = map().camera().scale;
+  pinch(2 * apart, {0, 3});  // Fingers never spread about one place exactly.
+  EXPECT_EQ(control.follow()->robot(), "r1");
+  EXPECT_NEAR(map().camera().scale, 2 * scale, 0.05 * scale);
+  pinch(apart, {0, 120});
+  EXPECT_EQ(control.follow()->robot(), "") << "they moved the map";
+}
+
 TEST_F(FollowWindow, WhileDrivingTheHeadingIsUpAndTheRobotIsLargeEnough) {
   const Camera before = map().camera();
   ASSERT_TRUE(map().fitting());

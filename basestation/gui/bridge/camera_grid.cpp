@@ -18,7 +18,7 @@ QList<QByteArray> tile_keys() {
 }
 
 QVariantList tile_of(const PlannedCamera& camera) {
-  constexpr std::array kRoles{"sharp", "thumbnail", "waits", "refused", "off", "lost"};
+  constexpr std::array kRoles{"sharp", "thumbnail", "queued", "refused", "off", "lost"};
   constexpr std::array kShapes{"", "", "ring", "triangle", "", "square"};
   constexpr std::array kTokens{Token::text, Token::text, Token::goal, Token::warn, Token::dim, Token::bad};
   const auto role = static_cast<std::size_t>(camera.role);
@@ -143,7 +143,9 @@ void CameraGrid::switchOn(const QString& robot, const QString& camera, bool on) 
   if (control_.silent())
     return control_.say("Not sent, as the station is silent: camera " + robot, "refused");
   set_off(name, !on);  // At once: a picture that is asked for would switch it on again.
-  control_.order(station::client::quoted({"camera", name.first, on ? "on" : "off", name.second}));
+  // What the grid asks for switches a camera on. `camera R on` would keep it on where the grid asks for
+  // nothing.
+  if (!on) control_.order(station::client::quoted({"camera", name.first, "off", name.second}));
 }
 
 void CameraGrid::add_command(const station::CommandEvent& event) {

@@ -42,7 +42,7 @@ class CameraGrid : public QObject {
   Q_INVOKABLE void choose(const QString& robot, const QString& camera);
   /// Makes the camera so many places after the sharp one the sharp one.
   Q_INVOKABLE void step(int by);
-  /// Switches a camera on or off, by the command `camera`.
+  /// Asks for the pictures of a camera again, or switches it off by the command `camera`.
   Q_INVOKABLE void switchOn(const QString& robot, const QString& camera, bool on);
 
   /// Size of a tile with its gap, pixels: as large as all of them fit into that space, or as small as one can

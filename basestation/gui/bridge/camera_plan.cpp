@@ -85,6 +85,11 @@ void list_cameras(const CameraPlanScene& scene, CameraPlan& plan) {
   }
 }
 
+bool is_driven(const station::World& world, const std::string& name) {
+  const station::Robot* robot = world.robot(name);
+  return robot && (robot->mode == "manual" || robot->mode == "smart_joystick");
+}
+
 /// How many thumbnails are asked for, and how often.
 struct Share {
   std::size_t count{};
@@ -96,6 +101,7 @@ Share share_of(std::size_t wanted, double bits) {
   Share out{.count = std::min(wanted, kMaxThumbnails)};
   const double fit = std::floor(bits / (kSmallBits * kMinRate) + 1e-6);
   if (fit < static_cast<double>(out.count)) out.count = static_cast<std::size_t>(fit);
+  if (out.count < wanted) out.count = std::min(out.count, kMaxInTurns);
   if (out.count == 0) return out;
   const double each = bits / static_cast<double>(out.count);
   const bool wide = each >= kWideBits * kWideRate;
@@ -119,11 +125,13 @@ CameraPlan camera_plan(const CameraPlanScene& scene) {
     if (camera.role != CameraRole::waits) continue;
     const PictureRoom room = rooms.of(camera.name.first);
     if (room.bits < kSmallBits * kMinRate)
-      camera.role = CameraRole::refused, camera.why = leaves(room);
+      camera.role = CameraRole::refused, camera.why = "link of " + camera.name.first + ": " + leaves(room);
     else if (camera.sharp)
       camera.role = CameraRole::sharp, camera.rate = kSharpRate;
     else if (unknown)
       camera.why = "waits for the report of " + scene.world->link;
+    else if (room.bits < kAmpleRoom && is_driven(*scene.world, camera.name.first))
+      camera.why = camera.name.first + " is driven: its link is the driver's picture's";
     else if (room.bits < kAmpleRoom && sharp != plan.cameras.end() &&
              sharp->name.first == camera.name.first && sharp->role != CameraRole::off)
       camera.why = camera.name.first + " sends the large picture";
@@ -142,9 +150,8 @@ CameraPlan camera_plan(const CameraPlanScene& scene) {
       camera.role = CameraRole::refused;
       camera.why = air.link + " leaves " + kbit(bits) + " for thumbnails";
     } else {
-      camera.why = share.count == kMaxThumbnails
-                       ? "waits for its turn: 12 at once"
-                       : "waits for its turn: " + air.link + " leaves " + kbit(bits);
+      camera.why = share.count == kMaxInTurns ? "waits for its turn: 6 at once"
+                                              : "waits for its turn: " + air.link + " leaves " + kbit(bits);
     }
   }
   if (!air.link.empty())

@@ -55,6 +55,8 @@ struct CameraPlan {
 /// At most so many thumbnails are asked for at once. With the sharp camera and those of other panes, they
 /// stay below the 16 cameras that a station looks at.
 inline constexpr std::size_t kMaxThumbnails = 12;
+/// The same where thumbnails take turns: the station holds those of the turn before for some seconds more.
+inline constexpr std::size_t kMaxInTurns = 6;
 
 /// Plans the grid. The sharp camera comes first: thumbnails share a quarter of what the station's link
 /// profile has for pictures, each at least one picture in 10 s; those that do not fit take turns. A robot

@@ -305,8 +305,8 @@ std::span<const Control::KeyRow> Control::keys() {
   static constexpr std::array kKeys{
       KeyRow{Qt::Key_Up, 0, true, true, [](Control& c) { c.move_selection(-1); }},
       KeyRow{Qt::Key_Down, 0, true, true, [](Control& c) { c.move_selection(1); }},
-      KeyRow{Qt::Key_Left, 0, true, true, [](Control& c) { c.cameras_.step(-1); }},
-      KeyRow{Qt::Key_Right, 0, true, true, [](Control& c) { c.cameras_.step(1); }},
+      KeyRow{Qt::Key_Left, 0, false, true, [](Control& c) { c.cameras_.step(-1); }},
+      KeyRow{Qt::Key_Right, 0, false, true, [](Control& c) { c.cameras_.step(1); }},
       KeyRow{Qt::Key_Tab, 0, false, true, [](Control& c) { c.attention_.show_next(); }},
       KeyRow{Qt::Key_L, Qt::ControlModifier, false, true,
              [](Control&) { Theme::instance().set_light(!Theme::instance().light()); }},

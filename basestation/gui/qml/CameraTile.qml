@@ -51,7 +51,8 @@ Rectangle {
         feeds: tile.feeds
         robot: tile.robot
         camera: tile.camera
-        active: tile.asks
+        active: tile.asks && Window.visibility !== Window.Hidden && Window.visibility !== Window.Minimized
+        rest: tile.large ? 350 : 0
         limit: tile.limit
         rate: tile.rate
     }

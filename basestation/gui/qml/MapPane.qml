@@ -119,7 +119,7 @@ Rectangle {
             objectName: "headingToggle"
             anchors.right: parent.right
             visible: pane.control.follow.robot !== "" || pane.control.follow.headingUp
-            active: pane.control.follow.headingUp
+            active: pane.control.follow.headingUp && pane.control.follow.robot !== ""
             text: "ahead ↑  u"
             spoken: "the heading of the robot is up"
             onFired: pane.control.follow.toggleHeading()

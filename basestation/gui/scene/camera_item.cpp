@@ -70,7 +70,7 @@ void CameraItem::restart() {
 
 /// Several properties change together.
 void CameraItem::ask_soon() {
-  QTimer::singleShot(0, this, [this, run = run_] {
+  QTimer::singleShot(rest_, this, [this, run = run_] {
     if (run == run_) ask();
   });
 }

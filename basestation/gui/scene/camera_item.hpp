@@ -22,6 +22,9 @@ class CameraItem : public QQuickPaintedItem {
   Q_PROPERTY(double rate MEMBER rate_ NOTIFY source_changed)
   /// The largest width that is asked for, pixels; 0: as wide as the item is.
   Q_PROPERTY(int limit MEMBER limit_ NOTIFY source_changed)
+  /// Time for which the source stays the same before a picture is asked for, ms: a station holds each request
+  /// for seconds.
+  Q_PROPERTY(int rest MEMBER rest_ NOTIFY source_changed)
   /// While it is false, the last picture stays in view and ages.
   Q_PROPERTY(bool active READ is_active WRITE set_active NOTIFY source_changed)
   Q_PROPERTY(QString caption READ caption NOTIFY shown_changed)
@@ -35,10 +38,11 @@ class CameraItem : public QQuickPaintedItem {
   Q_PROPERTY(bool empty READ is_empty NOTIFY shown_changed)
 
  public:
-  static constexpr double kStale = 1.0;  ///< s
-  static constexpr int kAgeStep = 500;   ///< Between two looks at the age, ms.
-  static constexpr int kRetry = 1000;    ///< After a problem, ms.
-  static constexpr int kPause = 100;     ///< After an answer without a picture, ms.
+  static constexpr double kStale = 1.0;        ///< s
+  static constexpr double kStaleAtMost = 5.0;  ///< However rarely pictures come, s.
+  static constexpr int kAgeStep = 500;         ///< Between two looks at the age, ms.
+  static constexpr int kRetry = 1000;          ///< After a problem, ms.
+  static constexpr int kPause = 100;           ///< After an answer without a picture, ms.
 
   explicit CameraItem(QQuickItem* parent = nullptr);
   void paint(QPainter* painter) override;
@@ -72,7 +76,7 @@ class CameraItem : public QQuickPaintedItem {
   /// the rate alone.
   double stale_after() const {
     const double period = period_ > 0.0 ? period_ : std::min(10.0, 1.0 / std::max(rate_, 0.1));
-    return std::max(kStale, 2.0 * period + 0.5);
+    return std::clamp(2.0 * period + 0.5, kStale, kStaleAtMost);
   }
   void restart();
   void ask_soon();
@@ -82,7 +86,7 @@ class CameraItem : public QQuickPaintedItem {
   CameraFeeds* feeds_{};
   QString robot_{}, camera_{};
   double rate_{15.0};
-  int limit_{};
+  int limit_{}, rest_{};
   bool active_{true};
   QImage image_{}, unmarked_{};
   QString problem_{};

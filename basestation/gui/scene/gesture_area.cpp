@@ -114,8 +114,9 @@ void GestureArea::pinch(const QPointF& first, const QPointF& second) {
   if (state_ != State::pinching) {
     leave_press();
     state_ = State::pinching;
+    pinched_ = middle;
   } else {
-    pan(middle - last_);
+    if (!holds_place() || length(middle - pinched_) > slop()) pan(middle - last_);
     zoom(std::clamp(spread / spread_, 0.2, 5.0), middle);
   }
   last_ = middle;

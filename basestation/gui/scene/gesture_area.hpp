@@ -44,6 +44,8 @@ class GestureArea : public QQuickItem {
   /// A rectangle from corner to corner; `done`: the finger was lifted.
   virtual void draw(const QPointF& /*from*/, const QPointF& /*to*/, bool /*done*/) {}
   virtual void drop_drawing() {}
+  /// Whether a pinch only zooms until its middle has moved by the slop.
+  virtual bool holds_place() const { return false; }
   virtual void pan(const QPointF& by) = 0;
   virtual void zoom(double factor, const QPointF& about) = 0;
 
@@ -81,7 +83,7 @@ class GestureArea : public QQuickItem {
   bool sliding_{false};
   QBasicTimer timer_{};  ///< Runs until a press means a place, and then for its ring.
   QElapsedTimer since_{};
-  QPointF start_{}, last_{};
+  QPointF start_{}, last_{}, pinched_{};
   double spread_{};  ///< Distance between two fingers, pixels.
 };
 

@@ -158,7 +158,7 @@ void MapView::fit(bool at_once) {
 
 void MapView::follow_changed() {
   const MapFollow& follow = *control_->follow();
-  if (!follow.robot().isEmpty()) {
+  if (follow.robot() != std::exchange(followed_, follow.robot()) && !followed_.isEmpty()) {
     set_fitting(false);
     camera_.scale = std::max(camera_.scale, kLeastScale);
   }
@@ -170,11 +170,14 @@ void MapView::follow_changed() {
 void MapView::drive_changed(bool driving) {
   constexpr double kDrivenMm = 12.0;  // Length of the robot on the screen.
   if (!driving) {
-    camera_.scale = before_drive_.scale;
-    set_fitting(before_drive_.fitting);
+    if (!before_drive_) return;
+    camera_.scale = before_drive_->scale;
+    set_fitting(before_drive_->fitting);
+    before_drive_.reset();
     return;
   }
-  before_drive_ = {fitting_, camera_.scale};
+  if (!before_drive_)
+    before_drive_ = {fitting_, camera_.scale};  // The stick may go from one robot to another.
   if (const station::Robot* robot = control_->follow()->target())
     camera_.scale = std::max(camera_.scale, kDrivenMm * Theme::instance().mm() / extent_of(*robot));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <QtQml/qqmlregistration.h>
+#include <optional>
 
 #include "basestation/gui/bridge/control.hpp"
 #include "basestation/gui/scene/floor_choice.hpp"
@@ -65,6 +66,7 @@ class MapView : public adit::gui::GestureArea {
  protected:
   void geometryChange(const QRectF& now, const QRectF& before) override;
   bool aiming() const override { return control_ && (control_->aiming() || control_->mark()->active()); }
+  bool holds_place() const override { return control_ && control_->follow()->target() != nullptr; }
   bool drawing() const override { return control_ && control_->area()->active(); }
   double slop() const override;
   void tap(const QPointF& at, bool add) override;
@@ -104,10 +106,12 @@ class MapView : public adit::gui::GestureArea {
   Camera camera_{};
   bool fitting_{true};
   double covered_{0.0}, covered_right_{0.0};
-  struct {
+  QString followed_{};  ///< Robot for which the scale was set.
+  struct BeforeDrive {
     bool fitting{};
     double scale{};
-  } before_drive_{};  ///< The view before a robot was driven.
+  };
+  std::optional<BeforeDrive> before_drive_{};  ///< The view before a robot was driven.
   SignalGrid grid_{};
   Floors floors_{};
   FloorChoice choice_{};

@@ -201,11 +201,14 @@ void MapView3D::follow_changed() {
 void MapView3D::drive_changed(bool driving) {
   constexpr double kNear = 12.0;  // m
   if (!driving) {
-    camera_.distance = before_drive_.distance;
-    set_fitting(before_drive_.fitting);
+    if (!before_drive_) return;
+    camera_.distance = before_drive_->distance;
+    set_fitting(before_drive_->fitting);
+    before_drive_.reset();
     return;
   }
-  before_drive_ = {fitting_, camera_.distance};
+  if (!before_drive_)
+    before_drive_ = {fitting_, camera_.distance};  // The stick may go from one robot to another.
   camera_.distance = std::min(camera_.distance, kNear);
 }
 
@@ -219,8 +222,8 @@ bool MapView3D::move_with_robot() {
   next.pan(-covered_right_ / 2, -covered_ / 2);
   const Point3 by = next.target - camera_.target;
   const double turned = std::abs(std::remainder(next.yaw - camera_.yaw, 2.0 * std::numbers::pi)) * width();
-  const bool near = next.distance == camera_.distance && turned < kMoved;
-  if (near && std::hypot(by.x, by.y, by.z) * camera_.focal() / camera_.distance < kMoved) return false;
+  if (turned < kMoved && std::hypot(by.x, by.y, by.z) * camera_.focal() / camera_.distance < kMoved)
+    return false;
   camera_ = next;
   look(Detail3::moving);
   return true;
@@ -331,7 +334,7 @@ void MapView3D::pan(const QPointF& by) {
     control_->follow()->end();
     camera_.pan(by.x(), by.y());
   } else {
-    if (by.x() != 0.0) control_->follow()->end_heading();
+    if (std::abs(by.x()) > 2.0 * std::abs(by.y())) control_->follow()->end_heading();
     camera_.orbit(by.x(), by.y());
   }
   look(Detail3::moving);

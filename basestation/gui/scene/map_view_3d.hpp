@@ -3,6 +3,7 @@
 #include <QtQml/qqmlregistration.h>
 #include <QBasicTimer>
 #include <QImage>
+#include <optional>
 
 #include "basestation/gui/bridge/control.hpp"
 #include "basestation/gui/scene/floor_choice.hpp"
@@ -103,6 +104,7 @@ class MapView3D : public adit::gui::GestureArea {
  protected:
   void geometryChange(const QRectF& now, const QRectF& before) override;
   void itemChange(ItemChange change, const ItemChangeData& data) override;
+  bool holds_place() const override { return control_ && control_->follow()->target() != nullptr; }
   bool aiming() const override { return control_ && (control_->aiming() || control_->mark()->active()); }
   double slop() const override;
   void tap(const QPointF& at, bool add) override;
@@ -142,10 +144,11 @@ class MapView3D : public adit::gui::GestureArea {
   QString floor_said_{};
   std::optional<Floor> floor_{};  ///< As the slice shows it.
   double covered_{0.0}, covered_right_{0.0};
-  struct {
+  struct BeforeDrive {
     bool fitting{};
     double distance{};
-  } before_drive_{};  ///< The view before a robot was driven.
+  };
+  std::optional<BeforeDrive> before_drive_{};  ///< The view before a robot was driven.
   std::vector<Point3> ghosts_{};
   QBasicTimer settled_{};  ///< Runs while the camera moves.
 };
