@@ -2,48 +2,25 @@
 // Objects that robots' own detectors found, as the station lists them.
 #include <gmock/gmock.h>
 
-#include "basestation/findings/report.hpp"
 #include "basestation/model/json.hpp"
-#include "core/findings/finding_piece.hpp"
 #include "core/findings/object_data.hpp"
-#include "core/store/memory_disk.hpp"
-#include "tests/station/fake_robot.hpp"
+#include "tests/station/findings_fixture.hpp"
 
 namespace adit::station {
 namespace {
 
 using testing::ElementsAre;
 
-class ObjectsReport : public StationTest {
+class ObjectsReport : public StoredFindings {
  protected:
-  ObjectsReport()
-      : book_(nullptr, *strand_),
-        desk_({}, std::make_shared<store::MemoryDisk>(), *strand_,
-              {[this](const findings::Finding& f) { book_.add(f.key); },
-               [](const std::string&, const std::string&) {}}) {}
-
   void find(const std::string& robot, std::uint64_t id, double x, const std::string& kind = "person",
             bool detected = true) {
     findings::Finding finding{.key = {robot, id}, .kind = kind, .importance = 5, .position = {x, 1, 0}};
     finding.text = "score 0.80";
     if (detected) finding.data = findings::encode_object({0.4, 0.8});
-    ASSERT_TRUE(desk_.hear(robot, findings::encode({robot, 1, 0, {finding}}), [] {}));
+    StoredFindings::find(finding);
   }
-  std::vector<FoundItem> listed() {
-    return findings_report(desk_, book_, marks_, photos_, chunks_, fleet_, {}).findings;
-  }
-  std::vector<std::uint32_t> numbers() {
-    std::vector<std::uint32_t> out;
-    for (const FoundItem& item : listed()) out.push_back(item.number);
-    return out;
-  }
-
-  FindingBook book_;
-  FindingDesk desk_;
-  Marks marks_{"op1", {1}, 1, desk_, *strand_};
-  findings::PhotoStore photos_{{}, nullptr, *strand_, nullptr, {}};
-  ChunkStore chunks_;
-  Fleet fleet_{"op1", {1}};
+  std::vector<FoundItem> listed() { return found().findings; }
 };
 
 TEST_F(ObjectsReport, AnObjectOfTwoRobotsIsListedOnce) {
@@ -89,7 +66,7 @@ TEST_F(ObjectsReport, AVerdictOnOneIsThatOfTheObject) {
 TEST_F(ObjectsReport, TheListAsTextAndAsJson) {
   find("r1", 1, 5.0);
   find("r2", 1, 5.1);
-  const FoundReport report = findings_report(desk_, book_, marks_, photos_, chunks_, fleet_, {});
+  const FoundReport report = found();
   EXPECT_THAT(findings_text(report), testing::HasSubstr("score 0.80, also by r2"));
   EXPECT_EQ(findings_json(report, desk_, book_)["findings"][0]["also"], nlohmann::json({2}));
 }

@@ -5,12 +5,9 @@
 #include <gmock/gmock.h>
 
 #include "basestation/commands/station_commands.hpp"
-#include "basestation/findings/report.hpp"
 #include "basestation/model/json.hpp"
-#include "core/findings/finding_piece.hpp"
 #include "core/findings/stairs_data.hpp"
-#include "core/store/memory_disk.hpp"
-#include "tests/station/fake_robot.hpp"
+#include "tests/station/findings_fixture.hpp"
 
 namespace adit::station {
 namespace {
@@ -29,22 +26,14 @@ Staircase flight_to_the_north(int steps = 6) {
           .sigma = {.place = 0.02, .heading = 0.02, .rise = 0.002, .run = 0.003, .width = 0.05}};
 }
 
-class StairsTest : public StationTest {
+class StairsTest : public StoredFindings {
  protected:
-  StairsTest()
-      : book_(nullptr, *strand_),
-        desk_({}, std::make_shared<store::MemoryDisk>(), *strand_,
-              {[this](const findings::Finding& f) { book_.add(f.key); },
-               [](const std::string&, const std::string&) {}}) {}
-
+  using StoredFindings::find;
   void find(const std::string& robot, std::uint64_t id, const Staircase& stairs) {
     find({.key = {robot, id},
           .kind = findings::kStairs,
           .position = {stairs.foot.x(), stairs.foot.y(), stairs.foot.z()},
           .data = findings::encode_stairs(stairs)});
-  }
-  void find(const findings::Finding& finding) {
-    ASSERT_TRUE(desk_.hear(finding.key.robot, findings::encode({finding.key.robot, 1, 0, {finding}}), [] {}));
   }
   void hear(const std::string& name, bool stairs, float step) {
     radio::Capabilities sample;
@@ -55,13 +44,6 @@ class StairsTest : public StationTest {
     fleet_.hear(sample, {.received = Time(1s)});
   }
   StairsReport report() { return stairs_report(desk_, book_, chunks_, fleet_); }
-
-  FindingBook book_;
-  FindingDesk desk_;
-  Marks marks_{"op1", {1}, 1, desk_, *strand_};
-  findings::PhotoStore photos_{{}, nullptr, *strand_, nullptr, {}};
-  ChunkStore chunks_;
-  Fleet fleet_{"op1", {1}};
 };
 
 TEST_F(StairsTest, WithoutAnyTheReportSaysSo) {
@@ -88,8 +70,7 @@ TEST_F(StairsTest, MoveWithTheSubmapInWhichTheyWereSeen) {
   const Eigen::Vector3d moved = after * (before.inverse() * stairs.foot);
   EXPECT_NEAR((report().stairs[0].stairs.foot - moved).norm(), 0.0, 0.001);
   EXPECT_NEAR(report().stairs[0].stairs.heading, stairs.heading + 0.25, 0.01);
-  const FoundReport found = findings_report(desk_, book_, marks_, photos_, chunks_, fleet_, {});
-  EXPECT_NEAR(found.findings.at(0).position[1], moved.y(), 0.001);
+  EXPECT_NEAR(found().findings.at(0).position[1], moved.y(), 0.001);
 }
 
 TEST_F(StairsTest, SeenByTwoRobotsAreOneRowWithTheFirstNumber) {
