@@ -9,7 +9,6 @@
 #include <string>
 #include <utility>
 
-#include "basestation/findings/report.hpp"
 #include "basestation/map/floor_height.hpp"
 #include "basestation/model/found_file.hpp"
 #include "basestation/report/text.hpp"
@@ -191,8 +190,7 @@ void FindingCommands::write_file(const Request& request, const Done& done) {
   const auto ending = std::filesystem::path(file).extension();
   if (ending != ".csv" && ending != ".geojson")
     return done(not_written({Reason::bad_argument, file + ": findings are written as .csv or .geojson"}));
-  FoundReport report = findings_report(content_.desk(), content_.book(), content_.marks(), content_.photos(),
-                                       content_.chunks(), fleet_, request.robots);
+  FoundReport report = content_.found(fleet_, request.robots);
   const std::size_t count = report.findings.size();
   strand_.compute(
       {.name = "findings file", .modelled = 20ms, .watchdog = 60s, .pool = PoolKind::io},

@@ -54,8 +54,7 @@ Outcome list_findings(const Request& request, const Fleet& fleet, Content& conte
         std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.first.robot == robot; });
     if (!found && !fleet.robot(robot)) return unknown_robot(request, fleet, robot);
   }
-  const FoundReport report = findings_report(content.desk(), content.book(), content.marks(),
-                                             content.photos(), content.chunks(), fleet, request.robots);
+  const FoundReport report = content.found(fleet, request.robots);
   Outcome outcome =
       done_outcome(request, findings_text(report), findings_json(report, content.desk(), content.book()));
   const std::uint64_t refused = content.pieces().refused(transfer::Kind::findings);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "adit/bulk.h"
+#include "basestation/findings/report.hpp"
 #include "core/command/words.hpp"
 #include "core/contract/bulk.hpp"
 #include "core/wire/typed.hpp"
@@ -210,6 +211,10 @@ FindingCounts Content::finding_counts() const {
     if (!finding.withdrawn && (!entry || entry->verdict == Verdict::open)) ++counts_.open;
   }
   return counts_;
+}
+
+FoundReport Content::found(const Fleet& fleet, const std::vector<std::string>& robots) const {
+  return findings_report(desk_, book_, marks_, photos(), chunks(), fleet, robots);
 }
 
 std::size_t Content::whole_photos() const {

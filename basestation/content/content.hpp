@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "basestation/content/digest_list.hpp"
 #include "basestation/content/piece_reader.hpp"
@@ -15,6 +16,7 @@
 #include "basestation/findings/photo_desk.hpp"
 #include "basestation/fleet/presence.hpp"
 #include "basestation/map/map_replica.hpp"
+#include "basestation/model/found.hpp"
 #include "basestation/model/map_tiles.hpp"
 #include "basestation/model/world.hpp"
 #include "core/findings/photo_source.hpp"
@@ -30,6 +32,8 @@ class VoxelImage;
 }
 
 namespace adit::station {
+
+class Fleet;
 
 /// The findings and maps of all robots: takes them by radio, stores them on disk and acknowledges them.
 class Content {
@@ -58,10 +62,11 @@ class Content {
   Marks& marks() { return marks_; }
   findings::PhotoStore& photos() { return photos_.photos(); }
   const findings::PhotoStore& photos() const { return photos_.photos(); }
+  /// The findings of the named robots and stations, or of all; see findings_report().
+  FoundReport found(const Fleet& fleet, const std::vector<std::string>& robots) const;
   /// Findings whose whole photo is here.
   std::size_t whole_photos() const;
   const FindingBook& book() const { return book_; }
-  const Marks& marks() const { return marks_; }
   const PieceReader& pieces() const { return pieces_; }
   FindingCounts finding_counts() const;
   const MapReceiver& maps() const { return map_.receiver(); }

@@ -8,7 +8,6 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
-#include "basestation/findings/report.hpp"
 #include "basestation/findings/stairs_report.hpp"
 #include "basestation/fleet/summary.hpp"
 #include "core/command/words.hpp"
@@ -99,10 +98,7 @@ StairsReport Station::stairs() const {
   return stairs_report(content_.desk(), content_.book(), content_.chunks(), fleet_);
 }
 
-FoundReport Station::found() const {
-  return findings_report(content_.desk(), content_.book(), content_.marks(), content_.photos(),
-                         content_.chunks(), fleet_, {});
-}
+FoundReport Station::found() const { return content_.found(fleet_, {}); }
 
 World Station::world() const {
   World world = world_of(fleet_, now());
