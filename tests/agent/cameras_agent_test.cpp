@@ -301,6 +301,40 @@ TEST_F(Cameras, OfTwoCamerasEachSendsInItsTurn) {
   for (const auto& camera : robot->cameras) EXPECT_GT(camera.rate, 5.0F) << camera.name;
 }
 
+TEST_F(Cameras, TenThatAreLookedAtShareAThinLink) {
+  std::vector<CameraConfig> ten(10);
+  for (std::size_t i = 0; i < ten.size(); ++i) ten[i].name = "c" + std::to_string(i);
+  begin(kMesh, ten);
+  std::map<std::string, int> shown;
+  std::map<std::string, std::uint64_t> newest;
+  double oldest = 0.0;
+  std::uint64_t bytes_before = 0;
+  const auto bytes = [&] {
+    std::uint64_t sum = 0;
+    for (const auto& count : bench->radio().counters().topics)
+      if (count.topic == wire::topics::kCamera.name) sum += count.bytes_out;
+    return sum;
+  };
+  for (int second = 0; second < 120; ++second) {
+    if (second == 20) bytes_before = bytes(), shown.clear();
+    for (const CameraConfig& camera : ten) {
+      const bool sharp = &camera == &ten.front();
+      (void)station->cameras().look("r1", camera.name, sharp ? 640 : 80, sharp ? 15.0F : 0.1F);
+      station->cameras().next("r1", camera.name, newest[camera.name], [&](const station::CameraPicture& got) {
+        if (got.number == 0 || newest[got.camera] == got.number) return;
+        newest[got.camera] = got.number;
+        ++shown[got.camera];
+      });
+    }
+    bench->run(1s);
+    if (second > 20) oldest = std::max(oldest, station->world().robot("r1")->age);
+  }
+  EXPECT_LE(8.0 * static_cast<double>(bytes() - bytes_before) / 100.0, 0.3 * 100e3);
+  EXPECT_GE(shown["c0"], 20) << "the large one";
+  for (const CameraConfig& camera : ten) EXPECT_GE(shown[camera.name], 4) << camera.name;
+  EXPECT_LT(oldest, 3.0) << "of the robot's state, s";
+}
+
 TEST_F(Cameras, GoOnAfterARestartOfTheComponent) {
   begin(kWifi);
   EXPECT_FALSE(watch(2s).empty());

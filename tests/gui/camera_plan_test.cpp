@@ -51,6 +51,17 @@ double thumbnail_bits(const CameraPlan& plan) {
   return sum;
 }
 
+TEST(CameraPlan, ThumbnailsOutOfSightTakeNoTurn) {
+  Site site(20, 30e3, "radio");
+  const std::set<CameraName> in_sight{{"r1", "front"}, {"r18", "front"}, {"r20", "front"}};
+  const CameraPlan plan = camera_plan(
+      {.world = &site.world, .net = &site.net, .sharp = site.sharp, .off = {}, .in_sight = &in_sight});
+  EXPECT_THAT(Site::robots_of(plan, CameraRole::sharp), ElementsAre("r1"));
+  EXPECT_THAT(Site::robots_of(plan, CameraRole::thumbnail), ElementsAre("r18", "r20"));
+  EXPECT_EQ(plan.cameras[1].role, CameraRole::waits);
+  EXPECT_EQ(plan.cameras[1].why, "out of sight");
+}
+
 TEST(CameraPlan, OneIsSharpAndTheOthersAreThumbnails) {
   const CameraPlan plan = Site(3).plan();
   ASSERT_EQ(plan.cameras.size(), 3U);

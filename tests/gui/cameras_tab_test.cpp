@@ -103,6 +103,22 @@ TEST_F(CamerasTab, AClosedTabAsksForNothing) {
   EXPECT_EQ(sink.queries.size(), queries) << "nor for the network";
 }
 
+TEST_F(CamerasTab, ThumbnailsOutOfSightAskForNothing) {
+  open_tab(1);
+  at(4).lost = false;
+  for (int i = 1; i < 10; ++i) at(i).cameras = {{.name = "front"}, {.name = "rear"}, {.name = "left"}};
+  show(world);
+  settle_layout();
+  const auto why = [&](std::size_t place) { return control.cameras()->plan().cameras.at(place).why; };
+  ASSERT_TRUE(is_asked("r2"));
+  EXPECT_EQ(why(27), "out of sight");
+  item("cameraTiles")->setProperty("contentY", 1e4);
+  ASSERT_TRUE(QMetaObject::invokeMethod(item("cameraTiles"), "returnToBounds"));
+  EXPECT_TRUE(QTest::qWaitFor([&] { return why(27) != "out of sight"; }, 10'000));
+  EXPECT_EQ(why(1), "out of sight");
+  EXPECT_EQ(control.cameras()->plan().cameras[0].why, "") << "the large one";
+}
+
 TEST_F(CamerasTab, EachStateHasItsWord) {
   station::NetworkReport net = net_of("mesh_500k", 5e5);
   net.agents[4].total_out = 80'000.0F;  // r4 has no room.
@@ -156,6 +172,10 @@ TEST_F(CamerasTab, OnAndOffAreTheCommandOfTheStation) {
   control.add_command({.id = 2, .ended = true, .line = "camera r4 off front", .exit_code = 1});
   settle();
   EXPECT_EQ(word("r4_front"), "waiting") << "it was refused";
+  touch(middle("cameraOff_r4_front"));
+  control.add_command({.id = 3, .ended = true, .line = "camera r4 off front", .exit_code = 5});
+  settle();
+  EXPECT_EQ(word("r4_front"), "waiting") << "it still sends";
   at(1).cameras[0].kept_on = true;
   show(world);
   EXPECT_EQ(text("count_cameras"), "1") << "what is on costs the link, also while the tab is closed";

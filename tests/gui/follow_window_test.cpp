@@ -149,6 +149,24 @@ TEST_F(FollowWindow, WhileDrivingTheHeadingIsUpAndTheRobotIsLargeEnough) {
   EXPECT_NEAR(map().camera().scale, before.scale, 1e-6) << "as before";
 }
 
+TEST_F(FollowWindow, AfterDrivingTheMapShowsThePlaceOfBefore) {
+  QTest::keyClick(window(), Qt::Key_Plus);
+  const QPoint at = on_map(2, 0) + QPoint(60, 60);
+  finger_down(at);
+  for (int step = 1; step < 6; ++step)
+    QTest::touchEvent(window(), finger).move(0, at + QPoint(20 * step, 9 * step), window());
+  finger_up(at + QPoint(100, 45));
+  const Camera before = map().camera();
+  ASSERT_FALSE(map().fitting());
+  drive_r1();
+  move_r1(6, 1, 2.2F);
+  ASSERT_GT(std::abs(map().camera().x - before.x), 0.5);
+  let_go();
+  EXPECT_NEAR(map().camera().x, before.x, 1e-6);
+  EXPECT_NEAR(map().camera().y, before.y, 1e-6);
+  EXPECT_NEAR(map().camera().scale, before.scale, 1e-6);
+}
+
 TEST_F(FollowWindow, NorthCanBeUpWhileDriving) {
   drive_r1();
   settle_layout();

@@ -118,6 +118,10 @@ TEST_F(MapWindow, TheSilentStationIsSaid) {
   control.show_link(true, 4.0, "");
   settle();
   EXPECT_TRUE(text("silent").contains("SILENT")) << text("silent").toStdString();
+  control.show_link(false, 4.0, "it ended");
+  settle();
+  EXPECT_TRUE(control.ended());
+  EXPECT_FALSE(item("startStation")->isVisible());
 }
 
 }  // namespace

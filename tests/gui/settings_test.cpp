@@ -74,6 +74,19 @@ TEST_F(SettingsTest, AWrongFileIsNamedInTheLogAndPreserved) {
   EXPECT_TRUE(content(file()).contains("theme: light"));
 }
 
+TEST_F(SettingsTest, WhatAnotherWindowStoredSurvivesAChange) {
+  write("theme: dark\nscale: 1.1\n");
+  WindowSettings& settings = *control.tabs()->settings();
+  settings.open(file());
+  write("theme: dark\nglove_mode: true\nscale: 1.5\npad:\n  dead_man: righttrigger\n");
+  Theme::instance().set_light(true);
+  const SettingsRead stored = read_settings(content(file()).toStdString());
+  EXPECT_EQ(stored.values, (SettingsValues{.light = true, .glove = true, .scale = 1.5}));
+  EXPECT_EQ(name_of(stored.pad.of(station::input::PadAction::dead_man)), "righttrigger");
+  settings.restoreDefaults();
+  EXPECT_EQ(read_settings(content(file()).toStdString()).values, SettingsValues{});
+}
+
 TEST_F(SettingsTest, ButtonsOfTheControllerAreReadAndSurviveAChange) {
   using station::input::PadAction;
   write("theme: light\npad:\n  dead_man: righttrigger\n  forward: -lefty\n  fast: none\n");

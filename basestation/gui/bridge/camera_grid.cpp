@@ -43,6 +43,8 @@ QVariantList tile_of(const PlannedCamera& camera) {
 
 CameraGrid::CameraGrid(Control& control)
     : QObject(&control), control_(control), tiles_(tile_keys(), this), large_(tile_keys(), this) {
+  seen_.setSingleShot(true);
+  connect(&seen_, &QTimer::timeout, this, &CameraGrid::refresh);
   turns_.setInterval(kTurnMs);
   connect(&turns_, &QTimer::timeout, this, [this] {
     ++turn_;
@@ -79,10 +81,13 @@ void CameraGrid::follow_selection() {
 void CameraGrid::refresh() {
   if (!is_shown()) return;
   follow_selection();
+  std::set<CameraName> in_sight;
+  for (const auto& [name, tiles] : in_sight_) in_sight.insert(name);
   plan_ = camera_plan({.world = &control_.world(),
                        .net = &control_.tabs()->net(),
                        .sharp = sharp_,
                        .off = off_,
+                       .in_sight = &in_sight,
                        .turn = turn_});
   std::vector<QVariantList> rows;
   std::vector<QVariantList> large;
@@ -119,6 +124,14 @@ QSizeF CameraGrid::tileFor(int tiles, double width, double height, double mm) co
   }
 }
 
+void CameraGrid::see(const QString& robot, const QString& camera, bool in_sight) {
+  const CameraName name{robot.toStdString(), camera.toStdString()};
+  const int tiles = in_sight_[name] += in_sight ? 1 : -1;
+  if (tiles <= 0) in_sight_.erase(name);
+  // Tiles appear while their list changes.
+  if (!seen_.isActive()) seen_.start(0);
+}
+
 void CameraGrid::choose(const QString& robot, const QString& camera) {
   sharp_ = {robot.toStdString(), camera.toStdString()};
   refresh();
@@ -142,6 +155,7 @@ void CameraGrid::switchOn(const QString& robot, const QString& camera, bool on) 
   const CameraName name{robot.toStdString(), camera.toStdString()};
   if (control_.silent())
     return control_.say("Not sent, as the station is silent: camera " + robot, "refused");
+  if (!on && !off_.contains(name)) ending_.insert(name);
   set_off(name, !on);  // At once: a picture that is asked for would switch it on again.
   // What the grid asks for switches a camera on. `camera R on` would keep it on where the grid asks for
   // nothing.
@@ -154,9 +168,14 @@ void CameraGrid::add_command(const station::CommandEvent& event) {
   const QString what = words.value(2);
   const station::Robot* robot = control_.world().robot(words.value(1).toStdString());
   if (!robot || robot->cameras.empty() || (what != "on" && what != "off")) return;
-  if (what == "off" && event.exit_code != station::kExitDone) return;
-  set_off({robot->name, words.size() > 3 ? words[3].toStdString() : robot->cameras.front().name},
-          what == "off");
+  const CameraName name{robot->name,
+                        words.size() > 3 ? words[3].toStdString() : robot->cameras.front().name};
+  const bool done = event.exit_code == station::kExitDone;
+  const bool ending = ending_.erase(name) > 0;
+  if (what == "on" || done)
+    set_off(name, what == "off");
+  else if (ending)
+    set_off(name, false);  // The camera still sends.
 }
 
 }  // namespace adit::gui

@@ -4,6 +4,7 @@
 #include <QObject>
 #include <QSize>
 #include <QTimer>
+#include <map>
 
 #include "basestation/gui/bridge/camera_plan.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
@@ -38,6 +39,8 @@ class CameraGrid : public QObject {
   void add_command(const station::CommandEvent& event);
   /// A part of the window begins or ends to show the grid.
   Q_INVOKABLE void watch(bool shown);
+  /// A thumbnail comes into sight, or leaves it.
+  Q_INVOKABLE void see(const QString& robot, const QString& camera, bool in_sight);
   /// Makes a camera the sharp one.
   Q_INVOKABLE void choose(const QString& robot, const QString& camera);
   /// Makes the camera so many places after the sharp one the sharp one.
@@ -71,8 +74,10 @@ class CameraGrid : public QObject {
   CameraName sharp_{};
   std::string selected_{};  ///< The robot whose camera the selection made the sharp one.
   std::set<CameraName> off_{};
+  std::set<CameraName> ending_{};  ///< Those that this grid switched off, until the station answered.
+  std::map<CameraName, int> in_sight_{};  ///< Thumbnails of each, over all that show the grid.
   std::size_t turn_{};
-  QTimer turns_{};
+  QTimer turns_{}, seen_{};
   int watchers_{0};
 };
 

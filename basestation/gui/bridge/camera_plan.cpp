@@ -128,6 +128,8 @@ CameraPlan camera_plan(const CameraPlanScene& scene) {
       camera.role = CameraRole::refused, camera.why = "link of " + camera.name.first + ": " + leaves(room);
     else if (camera.sharp)
       camera.role = CameraRole::sharp, camera.rate = kSharpRate;
+    else if (scene.in_sight && !scene.in_sight->contains(camera.name))
+      camera.why = "out of sight";
     else if (unknown)
       camera.why = "waits for the report of " + scene.world->link;
     else if (room.bits < kAmpleRoom && is_driven(*scene.world, camera.name.first))

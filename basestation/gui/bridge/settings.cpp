@@ -30,28 +30,28 @@ QString WindowSettings::default_file() {
   return (QDir::isAbsolutePath(folder) ? folder : QDir::homePath() + "/.config") + "/adit/gui.yaml";
 }
 
+SettingsRead WindowSettings::read() {
+  QFile in(file_);
+  SettingsRead out{.values = values(), .pad = pad_};
+  if (!in.exists()) return out;
+  if (!in.open(QIODevice::ReadOnly) || in.size() > kMaxFile)
+    out.problems = {(in.isOpen() ? "too long for settings" : in.errorString()).toStdString()};
+  else
+    out = read_settings(in.readAll().toStdString());
+  return out;
+}
+
 void WindowSettings::open(const QString& file, bool light) {
   file_ = file;
-  wrong_ = false;
-  QFile in(file);
-  if (in.exists()) {
-    if (!in.open(QIODevice::ReadOnly) || in.size() > kMaxFile) {
-      emit remark(file + ": " + (in.isOpen() ? "too long for settings" : in.errorString()));
-      wrong_ = true;
-    } else {
-      const SettingsRead read = read_settings(in.readAll().toStdString());
-      wrong_ = !read.problems.empty();
-      pad_ = read.pad;
-      for (const std::string& problem : read.problems)
-        emit remark(file + ", " + QString::fromStdString(problem));
-      applying_ = true;
-      apply(read.values);
-      applying_ = false;
-    }
-  }
+  const SettingsRead from = read();
+  pad_ = from.pad;
+  for (const std::string& problem : from.problems)
+    emit remark(file + (problem.starts_with("line") ? ", " : ": ") + QString::fromStdString(problem));
   applying_ = true;
+  apply(from.values);
   if (light) Theme::instance().set_light(true);
   applying_ = false;
+  known_ = values();
   emit changed();
 }
 
@@ -69,15 +69,21 @@ void WindowSettings::apply(const SettingsValues& values) {
 
 void WindowSettings::store() {
   if (file_.isEmpty()) return;
-  if (wrong_) {  // What is not understood is preserved.
+  const SettingsRead from = read();
+  if (!from.problems.empty()) {  // What is not understood is preserved.
     QFile::remove(file_ + ".bad");
     if (QFile::rename(file_, file_ + ".bad")) emit remark("what was wrong is preserved in " + file_ + ".bad");
-    wrong_ = false;
   }
+  const SettingsValues here = values();
+  SettingsValues next = from.values;
+  if (here.light != known_.light) next.light = here.light;
+  if (here.glove != known_.glove) next.glove = here.glove;
+  if (here.scale != known_.scale) next.scale = here.scale;
+  known_ = here;
   QDir().mkpath(QFileInfo(file_).path());
   QSaveFile out(file_);
   const bool stored = out.open(QIODevice::WriteOnly) &&
-                      out.write(QByteArray::fromStdString(settings_text(values(), pad_))) > 0 && out.commit();
+                      out.write(QByteArray::fromStdString(settings_text(next, from.pad))) > 0 && out.commit();
   if (!stored) emit remark("settings are not stored: " + file_ + ": " + out.errorString());
 }
 
@@ -94,6 +100,7 @@ void WindowSettings::restoreDefaults() {
   applying_ = true;
   apply({});
   applying_ = false;
+  known_ = {.light = true, .glove = true, .scale = 0.0};  // All of them are written.
   store();
   emit changed();
 }

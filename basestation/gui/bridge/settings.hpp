@@ -41,11 +41,13 @@ class WindowSettings : public QObject {
  private:
   static SettingsValues values();
   static void apply(const SettingsValues& values);
+  SettingsRead read();
+  /// Writes what changed here since the file was read or written: another window may have stored the rest.
   void store();
 
   QString file_{};
   station::input::PadMapping pad_{};
-  bool wrong_{false};  ///< The file holds what this version does not understand.
+  SettingsValues known_{};  ///< As they were when the file was read or written.
   bool applying_{false};
 };
 

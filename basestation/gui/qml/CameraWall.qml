@@ -61,6 +61,8 @@ Item {
                 marked: sharp
                 width: tiles.cellWidth - wall.gap
                 height: tiles.cellHeight - wall.gap
+                Component.onCompleted: tile_.grid.see(tile_.robot, tile_.camera, true)
+                Component.onDestruction: tile_.grid.see(tile_.robot, tile_.camera, false)
             }
         }
     }

@@ -57,7 +57,8 @@ Rectangle {
             Layout.fillWidth: true
         }
         HoldButton {
-            visible: bar.control.ended
+            objectName: "startStation"
+            visible: bar.control.ended && !bar.control.viewOnly
             text: "Start the station again"
             onFired: bar.control.restartStation()
         }

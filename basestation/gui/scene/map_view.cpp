@@ -171,13 +171,15 @@ void MapView::drive_changed(bool driving) {
   constexpr double kDrivenMm = 12.0;  // Length of the robot on the screen.
   if (!driving) {
     if (!before_drive_) return;
-    camera_.scale = before_drive_->scale;
-    set_fitting(before_drive_->fitting);
-    before_drive_.reset();
+    const auto [fitting, camera] = *std::exchange(before_drive_, {});
+    camera_.x = camera.x;
+    camera_.y = camera.y;
+    camera_.scale = camera.scale;
+    set_fitting(fitting);
     return;
   }
   if (!before_drive_)
-    before_drive_ = {fitting_, camera_.scale};  // The stick may go from one robot to another.
+    before_drive_ = {fitting_, camera_};  // The stick may go from one robot to another.
   if (const station::Robot* robot = control_->follow()->target())
     camera_.scale = std::max(camera_.scale, kDrivenMm * Theme::instance().mm() / extent_of(*robot));
 }

@@ -109,7 +109,7 @@ class MapView : public adit::gui::GestureArea {
   QString followed_{};  ///< Robot for which the scale was set.
   struct BeforeDrive {
     bool fitting{};
-    double scale{};
+    Camera camera{};
   };
   std::optional<BeforeDrive> before_drive_{};  ///< The view before a robot was driven.
   SignalGrid grid_{};

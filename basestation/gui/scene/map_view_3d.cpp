@@ -202,13 +202,15 @@ void MapView3D::drive_changed(bool driving) {
   constexpr double kNear = 12.0;  // m
   if (!driving) {
     if (!before_drive_) return;
-    camera_.distance = before_drive_->distance;
-    set_fitting(before_drive_->fitting);
-    before_drive_.reset();
+    const auto [fitting, camera] = *std::exchange(before_drive_, {});
+    camera_.target = camera.target;
+    camera_.yaw = camera.yaw;
+    camera_.distance = camera.distance;
+    set_fitting(fitting);
     return;
   }
   if (!before_drive_)
-    before_drive_ = {fitting_, camera_.distance};  // The stick may go from one robot to another.
+    before_drive_ = {fitting_, camera_};  // The stick may go from one robot to another.
   camera_.distance = std::min(camera_.distance, kNear);
 }
 

@@ -146,7 +146,7 @@ class MapView3D : public adit::gui::GestureArea {
   double covered_{0.0}, covered_right_{0.0};
   struct BeforeDrive {
     bool fitting{};
-    double distance{};
+    OrbitCamera camera{};
   };
   std::optional<BeforeDrive> before_drive_{};  ///< The view before a robot was driven.
   std::vector<Point3> ghosts_{};
