@@ -85,14 +85,18 @@ pids+=("$simulator")
 wait_for "$home/simulate.log" "simulate: ready" 30 "the simulator"
 
 number=0
-while read -r name platform x y yaw; do
+while read -r name platform x y yaw camera; do
   number=$((number + 1))
   printf '  %-14s %s, at %s %s\n' "robot $name" "$platform" "$x" "$y"
   printf 'name: %s\nplatform: %s\npose: [%s, %s, %s]\nradio: {domain: %s}\nrobot_domain: %s\ntree: trees/robot.xml\nperception: slam\n' \
     "$name" "$platform" "$x" "$y" "$yaw" "$domain" "$((domain + number))" > "$home/$name.yaml"
+  if [ -n "$camera" ]; then  # A camera is part of a platform.
+    printf '%s\nsensors: {%s}\n' "$(cat "$root/config/platforms/$platform.yaml")" "$camera" > "$home/$name.platform.yaml"
+    sed -i "s|^platform:.*|platform: $home/$name.platform.yaml|" "$home/$name.yaml"
+  fi
   "$bin/robot_agent" --supervised --config "$home/$name.yaml" > "$home/$name.log" 2>&1 &
   pids+=("$!")
-done < <(sed -n 's/^ *- {id: \([a-z0-9]*\), platform: \([a-z]*\), pose: \[\([^,]*\), *\([^,]*\), *\([^]]*\)\]}.*/\1 \2 \3 \4 \5/p' "$scenario")
+done < <(sed -n 's/^ *- {id: \([a-z0-9]*\), platform: \([a-z]*\), pose: \[\([^,]*\), *\([^,]*\), *\([^]]*\)\]\(, \(camera: {.*}\)\)\{0,1\}}.*/\1 \2 \3 \4 \5 \7/p' "$scenario")
 
 for name in "${operators[@]}"; do
   "$bin/basestation" --name "$name" --domain "$domain" up > "$home/$name.log" 2>&1 ||
@@ -117,7 +121,7 @@ picture_after=40
 window=()
 if [ "$gui$film" = yesno ]; then
   [ -x "$bin/adit_gui" ] || { echo "demo: there is no $bin/adit_gui: ./run demo --gui builds it" >&2; exit 1; }
-  window=("$bin/adit_gui" --name op1 --domain "$domain" --select "${robots[1]}")
+  window=("$bin/adit_gui" --name op1 --domain "$domain" --select "${robots[1]}" --camera)
   if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
     echo "  window         of op1; keys and gestures are in docs/gui.md"
   else

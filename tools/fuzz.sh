@@ -1,15 +1,17 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # Gives made-up bytes of a station to the client's readers, made-up pieces of maps, findings, photos and pictures to
-# their decoders, and made-up datagrams to the guard of the radio, with libFuzzer and the sanitizers. usage: tools/fuzz.sh
-# [SECONDS [PROGRAM...]]   (of each, default 300; programs: fuzz_client, fuzz_piece, fuzz_finding_piece,
-# fuzz_photo_piece, fuzz_picture_piece, fuzz_rtps_guard, default all). What it finds is in build/fuzz/found, its inputs are in
-# build/fuzz/corpus*. Exit status 77: Clang with libFuzzer is not installed.
+# their decoders, made-up models to the reader of ONNX files, and made-up datagrams to the guard of the radio, with
+# libFuzzer and the sanitizers. usage: tools/fuzz.sh [SECONDS [PROGRAM...]]   (of each, default 300; programs:
+# fuzz_client, fuzz_piece, fuzz_finding_piece, fuzz_photo_piece, fuzz_picture_piece, fuzz_onnx_input, fuzz_rtps_guard,
+# default all). What it finds is in build/fuzz/found, its inputs are in build/fuzz/corpus*. Exit status 77: Clang with
+# libFuzzer is not installed.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
 seconds="${1:-300}"
 programs=("${@:2}")
-[ ${#programs[@]} -gt 0 ] || programs=(fuzz_client fuzz_piece fuzz_finding_piece fuzz_photo_piece fuzz_picture_piece fuzz_rtps_guard)
+[ ${#programs[@]} -gt 0 ] || programs=(fuzz_client fuzz_piece fuzz_finding_piece fuzz_photo_piece fuzz_picture_piece fuzz_onnx_input
+  fuzz_rtps_guard)
 build=build/fuzz
 probe="$(mktemp -d)"
 trap 'rm -rf "$probe"' EXIT
@@ -46,6 +48,7 @@ for program in "${programs[@]}"; do
     fuzz_finding_piece) fuzz fuzz_finding_piece "$build/corpus_finding_pieces" 1300 ;;
     fuzz_photo_piece) fuzz fuzz_photo_piece "$build/corpus_photo_pieces" 8000 ;;
     fuzz_picture_piece) fuzz fuzz_picture_piece "$build/corpus_picture_pieces" 4000 ;;
+    fuzz_onnx_input) fuzz fuzz_onnx_input "$build/corpus_onnx" 4000 ;;
   esac
 done
 exit $status

@@ -33,6 +33,7 @@ struct Options {
   std::vector<std::string> select{};
   WindowKind window{WindowKind::main};
   bool light{false};
+  bool camera{false};  ///< Shows the picture of the selected robot's camera.
 };
 
 int fail(int code, const std::string& text) {
@@ -58,10 +59,13 @@ std::optional<int> read_options(int argc, char** argv, Options& options) {
       ->needs("--screenshot");
   app.add_option("--size", options.size, "Size of the window, WIDTHxHEIGHT in pixels");
   app.add_flag("--light", options.light, "Light theme, for sunlight; Ctrl+L changes it");
+  app.add_flag("--camera", options.camera,
+               "Show the picture of the selected robot's camera, as the key C does");
   app.footer(
       "Examples:\n"
       "  adit_gui                                   the window of op1 on this machine\n"
       "  adit_gui --name op2 --link wifi --interface 10.0.0.4\n"
+      "  adit_gui --select r2 --camera              r2 is selected, its camera's picture is shown\n"
       "  adit_gui --window map --size 1920x1080     a second screen beside it: map, cameras, stop of all\n"
       "  adit_gui --screenshot window.png --after 5 --size 1920x1080\n"
       "  QT_QPA_PLATFORM=offscreen QT_QUICK_BACKEND=software adit_gui --screenshot window.png   without a "
@@ -149,7 +153,8 @@ int show_window(int argc, char** argv, const Options& options, const QSize& size
     });
   for (const std::string& robot : options.select) control.select(QString::fromStdString(robot), true);
   constexpr int kWide = 1600;  // There is room for the details beside the map.
-  control.details()->set_open(size.width() >= kWide && !maps);
+  control.details()->set_camera_on(options.camera);
+  control.details()->set_open((size.width() >= kWide || options.camera) && !maps);
   control.set_solid(maps && by_gpu);
   const OperatorWindow window(control, options.window);
   if (!window.window())

@@ -335,6 +335,30 @@ TEST_F(Cameras, TenThatAreLookedAtShareAThinLink) {
   EXPECT_LT(oldest, 3.0) << "of the robot's state, s";
 }
 
+TEST_F(Cameras, TwentyMegapixelsSixtyTimesASecondAreShown) {
+  begin(kWifi);
+  sends = false;
+  std::vector<std::vector<std::uint8_t>> large;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    perception::Picture picture{.width = 5184, .height = 3888, .channels = 1};
+    picture.bytes.assign(std::size_t{5184} * 3888, static_cast<std::uint8_t>(60 + 90 * i));
+    large.push_back(perception::encode_jpeg(picture, 60));
+  }
+  int sent = 0;
+  const Timer timer = bench->strand().every(17ms, [&] {
+    CompressedImage message;
+    stamp(message.header());
+    message.data(large[static_cast<std::size_t>(++sent / 8 % 2)]);
+    (void)compressed.write(message);
+  });
+  const auto shown = watch(4s, 320);
+  EXPECT_GT(sent, 200);
+  ASSERT_GE(shown.size(), 3U);
+  EXPECT_LE(shown.size(), 61U) << "what is asked for, not what is sent";
+  EXPECT_EQ(shown.back().width, 320U);
+  EXPECT_LT(shown.back().age, 1.0);
+}
+
 TEST_F(Cameras, GoOnAfterARestartOfTheComponent) {
   begin(kWifi);
   EXPECT_FALSE(watch(2s).empty());

@@ -168,8 +168,7 @@ void CameraGrid::add_command(const station::CommandEvent& event) {
   const QString what = words.value(2);
   const station::Robot* robot = control_.world().robot(words.value(1).toStdString());
   if (!robot || robot->cameras.empty() || (what != "on" && what != "off")) return;
-  const CameraName name{robot->name,
-                        words.size() > 3 ? words[3].toStdString() : robot->cameras.front().name};
+  const CameraName name{robot->name, words.size() > 3 ? words[3].toStdString() : robot->cameras.front().name};
   const bool done = event.exit_code == station::kExitDone;
   const bool ending = ending_.erase(name) > 0;
   if (what == "on" || done)

@@ -74,7 +74,7 @@ class CameraGrid : public QObject {
   CameraName sharp_{};
   std::string selected_{};  ///< The robot whose camera the selection made the sharp one.
   std::set<CameraName> off_{};
-  std::set<CameraName> ending_{};  ///< Those that this grid switched off, until the station answered.
+  std::set<CameraName> ending_{};         ///< Those that this grid switched off, until the station answered.
   std::map<CameraName, int> in_sight_{};  ///< Thumbnails of each, over all that show the grid.
   std::size_t turn_{};
   QTimer turns_{}, seen_{};

@@ -178,8 +178,7 @@ void MapView::drive_changed(bool driving) {
     set_fitting(fitting);
     return;
   }
-  if (!before_drive_)
-    before_drive_ = {fitting_, camera_};  // The stick may go from one robot to another.
+  if (!before_drive_) before_drive_ = {fitting_, camera_};  // The stick may go from one robot to another.
   if (const station::Robot* robot = control_->follow()->target())
     camera_.scale = std::max(camera_.scale, kDrivenMm * Theme::instance().mm() / extent_of(*robot));
 }

@@ -209,8 +209,7 @@ void MapView3D::drive_changed(bool driving) {
     set_fitting(fitting);
     return;
   }
-  if (!before_drive_)
-    before_drive_ = {fitting_, camera_};  // The stick may go from one robot to another.
+  if (!before_drive_) before_drive_ = {fitting_, camera_};  // The stick may go from one robot to another.
   camera_.distance = std::min(camera_.distance, kNear);
 }
 

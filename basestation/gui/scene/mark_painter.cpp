@@ -4,6 +4,7 @@
 #include <QPainter>
 #include <QPolygonF>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "basestation/gui/scene/theme.hpp"
@@ -91,6 +92,38 @@ void MarkPainter::draw_bar(QPainter& painter) const {
   draw_label(painter, {.at = {right - pixels / 2, y - 13}, .text = text.toStdString()});
 }
 
+void MarkPainter::draw_legend(QPainter& painter) const {
+  struct Entry {
+    Rgb colour{};
+    const char* word{};
+  };
+  const Theme& theme = Theme::instance();
+  const Palette& palette = theme.palette();
+  const std::array entries{Entry{palette.unknown, "unknown"}, Entry{palette.floor, "floor"},
+                           Entry{palette.low, "low thing"}, Entry{palette.high, "wall"}};
+  const double mm = theme.mm(), side = 3.0 * mm, gap = 1.2 * mm, high = 5.0 * mm;
+  QFont font = painter.font();
+  font.setPixelSize(static_cast<int>(std::lround(3.0 * mm)));
+  painter.setFont(font);
+  painter.setOpacity(1.0);
+  const QFontMetricsF metrics(font);
+  double wide = gap;
+  for (const Entry& entry : entries) wide += side + metrics.horizontalAdvance(entry.word) + 3 * gap;
+  const QRectF box(0, height() - high, wide, high);
+  painter.fillRect(box, theme.panel());
+  double x = 1.5 * gap;
+  for (const Entry& entry : entries) {
+    const QRectF swatch(x, box.center().y() - side / 2, side, side);
+    painter.setPen(theme.edge());
+    painter.setBrush(QColor::fromRgb(entry.colour));
+    painter.drawRect(swatch);
+    painter.setPen(theme.text());
+    painter.drawText(QRectF(swatch.right() + gap, box.y(), wide, high), Qt::AlignLeft | Qt::AlignVCenter,
+                     entry.word);
+    x += side + metrics.horizontalAdvance(entry.word) + 3 * gap;
+  }
+}
+
 void MarkPainter::draw_north(QPainter& painter) const {
   if (camera_.turn == 0.0) return;
   const double mm = Theme::instance().mm(), length = 4.0 * mm;
@@ -120,6 +153,7 @@ void MarkPainter::paint(QPainter* painter) {
   for (const Shape& shape : marks_.shapes) draw_shape(*painter, shape);
   for (const MapLabel& label : marks_.labels) draw_label(*painter, label);
   draw_bar(*painter);
+  if (!on_colours_) draw_legend(*painter);
   draw_north(*painter);
 }
 

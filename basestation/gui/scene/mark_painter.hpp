@@ -24,6 +24,8 @@ class MarkPainter : public QQuickPaintedItem {
   void draw_shape(QPainter& painter, const Shape& shape) const;
   void draw_label(QPainter& painter, const MapLabel& label) const;
   void draw_bar(QPainter& painter) const;
+  /// What the colours of the map from above mean.
+  void draw_legend(QPainter& painter) const;
   /// An arrow to the north, where it is not up.
   void draw_north(QPainter& painter) const;
 
