@@ -19,6 +19,7 @@
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/findings/detection.hpp"
 #include "robot_agent/motion/map_frame.hpp"
+#include "robot_agent/motion/map_watch.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/safeguard/safeguard_params.hpp"
 
@@ -57,6 +58,7 @@ struct AgentParams {
   std::function<std::shared_ptr<const nav::PlannerLibrary>(const Platform&)> library{};
   /// Makes a local planner that replaces the one that the platform names; empty: the platform's.
   std::function<std::unique_ptr<nav::Planner>()> local_planner{};
+  MapWatch watch_maps{};
   /// Stores the state that survives a restart; null: nothing is stored.
   std::shared_ptr<store::Disk> disk{};
   std::uint64_t boot{};  ///< Id of the computer's boot; odometry starts again at each boot; 0: unknown.

@@ -81,7 +81,8 @@ UnitParams Agent::Impl::command_unit() {
 UnitParams Agent::Impl::planner_unit() {
   return {
       .name = "planner", .dedicated = true, .make = [this](Executor& strand) -> std::unique_ptr<Component> {
-        const PlannerParams planner_params{params.platform, params.planning, params.local_planner};
+        const PlannerParams planner_params{params.platform, params.planning, params.local_planner,
+                                           params.watch_maps};
         return std::make_unique<Planner>(planner_params, strand, Log(params.log, params.name),
                                          context->planner, library());
       }};
@@ -91,7 +92,7 @@ UnitParams Agent::Impl::router_unit() {
   return {
       .name = "router", .dedicated = true, .make = [this](Executor& strand) -> std::unique_ptr<Component> {
         return std::make_unique<Router>(params.platform, strand, Log(params.log, params.name),
-                                        *context->router);
+                                        *context->router, params.watch_maps);
       }};
 }
 

@@ -59,12 +59,13 @@ void Planner::plan(const std::shared_ptr<const PlanJob>& job,
   using Answer = std::shared_ptr<const PlanAnswer>;
   compute(
       {.name = "plan", .modelled = params_.planning, .lane = "map"},
-      [job, maps = maps_]() -> Answer {
+      [job, maps = maps_, watch = params_.watch.local]() -> Answer {
         nav::LocalNavigation& local_navigation = maps->local_navigation;
         if (std::exchange(maps->odom_epoch, job->odom_epoch) != job->odom_epoch) local_navigation.clear();
         const double stamp = seconds(job->made.time_since_epoch());
         local_navigation.set_stairs(job->stairs);
         local_navigation.add_scan(job->scan->measured(), job->scan->body, stamp);
+        if (watch) watch(*job, local_navigation);
         auto answer = std::make_shared<PlanAnswer>();
         if (job->target.kind != nav::Target::Kind::none)
           answer->plan = local_navigation.plan(job->target, job->pose, stamp, job->border, job->peers);

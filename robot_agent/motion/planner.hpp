@@ -9,6 +9,7 @@
 #include "core/geometry/staircase.hpp"
 #include "nav/local_navigation.hpp"
 #include "nav/recovery/recovery.hpp"
+#include "robot_agent/motion/map_watch.hpp"
 
 namespace adit::agent {
 
@@ -61,6 +62,7 @@ struct PlannerParams {
   Duration planning{20ms};  ///< Duration of a cycle in rehearsal.
   /// Makes the local planner; empty: the platform's.
   nav::PlannerFactory local_planner{};
+  MapWatch watch{};
 };
 
 /// The component of terrain map and local planner, on a strand of its own, offered as a service. After a

@@ -64,10 +64,11 @@ struct Router::Maps {
   }
 };
 
-Router::Router(const Platform& platform, Executor& strand, Log log, RouteServices& services)
+Router::Router(const Platform& platform, Executor& strand, Log log, RouteServices& services, MapWatch watch)
     : Component("router", strand, std::move(log), {.beat = 100ms}),
       services_(services),
-      maps_(std::make_shared<Maps>(platform)) {}
+      maps_(std::make_shared<Maps>(platform)),
+      watch_(std::move(watch)) {}
 
 template <class Query, class Answer, class Work>
 void Router::serve(Service<Query, Answer>& service, const char* name, Work work) {
@@ -114,13 +115,14 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
   }
   compute(
       {.name = "route step", .modelled = kModelled, .lane = "maps"},
-      [job, takes, maps = maps_]() -> nav::RouteStep {
+      [job, takes, maps = maps_, watch = watch_.route]() -> nav::RouteStep {
         maps->enter(*job);
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) {
           const auto scan = without_team(job->scan, job->team);
           maps->planner.add_scan(scan->measured(), scan->located, stamp, job->goal.has_value());
           maps->explorer.add_scan(scan->measured(), scan->located);
+          if (watch) watch(*job, maps->planner);
         }
         set_team(maps->planner, job->team, maps->platform.width / 2);
         if (job->goal) return maps->step(*job, stamp);

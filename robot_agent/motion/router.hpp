@@ -86,7 +86,7 @@ struct RouteServices {
 /// followed route. After a restart its map is empty; the next scans fill it.
 class Router : public Component {
  public:
-  Router(const Platform& platform, Executor& strand, Log log, RouteServices& services);
+  Router(const Platform& platform, Executor& strand, Log log, RouteServices& services, MapWatch watch = {});
 
  protected:
   Result<void> on_start() override;
@@ -100,6 +100,7 @@ class Router : public Component {
 
   RouteServices& services_;
   std::shared_ptr<Maps> maps_;
+  MapWatch watch_;
   std::optional<Time> taken_{};  ///< Time when the last scan entered the map.
   Eigen::Vector3d taken_at_{0, 0, 0};
 };

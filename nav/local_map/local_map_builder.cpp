@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nav/local_map/local_map_builder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+
+namespace adit::nav {
+namespace {
+
+/// What is so near to the surface of a mover belongs to it: as far as a person walks while three scans pass,
+/// after which its traces are seen to be free, m.
+constexpr float kBesideMover = 0.35f;
+
+constexpr float kLargestRobot = 2.0f;  ///< Radius, m: what other robots claim is bounded.
+
+CellClass class_of(TerrainMap::Kind kind) {
+  switch (kind) {
+    case TerrainMap::Kind::unknown:
+      return CellClass::unknown;
+    case TerrainMap::Kind::ground:
+      return CellClass::ground;
+    case TerrainMap::Kind::step:
+      return CellClass::step;
+    case TerrainMap::Kind::slope:
+      return CellClass::slope;
+    case TerrainMap::Kind::obstacle:
+      return CellClass::obstacle;
+    case TerrainMap::Kind::drop:
+      return CellClass::drop;
+  }
+  return CellClass::unknown;
+}
+
+CellClass class_of(Layer layer) {
+  switch (layer) {
+    case Layer::obstacle:
+      return CellClass::obstacle;
+    case Layer::drop:
+      return CellClass::drop;
+    case Layer::slope:
+      return CellClass::slope;
+    case Layer::step:
+      return CellClass::step;
+    case Layer::roughness:
+      return CellClass::ground;
+  }
+  return CellClass::unknown;
+}
+
+std::uint8_t cost_of(float cost) {
+  if (cost >= 1.0f) return LocalCell::kImpassable;
+  return static_cast<std::uint8_t>(std::clamp(std::ceil(cost * 254.0f), 0.0f, 254.0f));
+}
+
+std::int8_t aside_of(float metres) {
+  return static_cast<std::int8_t>(std::lround(std::clamp(metres / LocalCell::kAsideUnit, -127.0f, 127.0f)));
+}
+
+}  // namespace
+
+struct LocalMapBuilder::Stock {
+  static constexpr std::size_t kMost = 4;
+  std::mutex mutex{};
+  std::vector<std::unique_ptr<LocalMap>> maps{};
+};
+
+LocalMapBuilder::LocalMapBuilder() : stock_(std::make_shared<Stock>()) { stock_->maps.reserve(Stock::kMost); }
+
+std::shared_ptr<LocalMap> LocalMapBuilder::begin(const LocalMapScan& scan) {
+  std::unique_ptr<LocalMap> map;
+  {
+    const std::lock_guard lock(stock_->mutex);
+    if (!stock_->maps.empty()) {
+      map = std::move(stock_->maps.back());
+      stock_->maps.pop_back();
+    }
+  }
+  if (!map) map = std::make_unique<LocalMap>();
+  map->scan_ = scan;
+  map->x0_ = LocalMap::cell(static_cast<float>(scan.body.position.x())) - LocalMap::kSide / 2;
+  map->y0_ = LocalMap::cell(static_cast<float>(scan.body.position.y())) - LocalMap::kSide / 2;
+  map->cells_.assign(std::size_t{LocalMap::kSide} * LocalMap::kSide, LocalCell{});
+  map->places_.clear();
+  return {map.release(), [stock = stock_](LocalMap* used) {
+            std::unique_ptr<LocalMap> back(used);
+            const std::lock_guard lock(stock->mutex);
+            if (stock->maps.size() < Stock::kMost) stock->maps.push_back(std::move(back));
+          }};
+}
+
+std::shared_ptr<const LocalMap> LocalMapBuilder::make(const TerrainMap& terrain, const LocalMapScan& scan,
+                                                      const LocalMapOthers& others) {
+  auto map = begin(scan);
+  write_ground(terrain, *map);
+  write_obstacles(terrain, *map);
+  mark(others, *map);
+  write_places(terrain, *map);
+  return map;
+}
+
+std::shared_ptr<const LocalMap> LocalMapBuilder::make(const AirMap& air, const LocalMapScan& scan,
+                                                      const LocalMapOthers& others) {
+  auto map = begin(scan);
+  for (const Eigen::Vector2f& place : air.cells()) {
+    const int ix = LocalMap::cell(place.x()), iy = LocalMap::cell(place.y());
+    if (!map->inside(ix, iy)) continue;
+    LocalCell& cell = map->cells_[LocalMap::index(ix, iy)];
+    cell.kind = CellClass::obstacle;
+    cell.cost = LocalCell::kImpassable;
+  }
+  mark(others, *map);
+  for (const Eigen::Vector2f& place : air.cells()) {
+    const LocalCell* cell = map->find(place.x(), place.y());
+    map->places_.push_back({.x = place.x(), .y = place.y(), .kind = cell ? cell->kind : CellClass::obstacle});
+  }
+  return map;
+}
+
+// A cell of the terrain's ground is as wide as two of the map.
+void LocalMapBuilder::write_ground(const TerrainMap& terrain, LocalMap& map) {
+  static_assert(GroundGrid::kCell == 2 * LocalMap::kCell);
+  const GroundGrid& ground = terrain.ground();
+  const int side = ground.side();
+  const auto datum = static_cast<float>(terrain.height_correction());
+  terrain.classify_cells(kinds_);
+  const Eigen::Vector2f first = ground.middle(0);
+  const int ix0 = LocalMap::cell(first.x() - LocalMap::kCell / 2),
+            iy0 = LocalMap::cell(first.y() - LocalMap::kCell / 2);
+  const auto each_quarter = [&](int index, auto&& write) {
+    const int ix = ix0 + 2 * (index / side), iy = iy0 + 2 * (index % side);
+    for (const int dy : {0, 1})
+      for (const int dx : {0, 1})
+        if (map.inside(ix + dx, iy + dy)) write(map.cells_[LocalMap::index(ix + dx, iy + dy)]);
+  };
+  if (!ground.grown()) return;
+  for (int k = 0; k < static_cast<int>(ground.cells()); ++k) {
+    const bool measured = ground.measured(k);
+    LocalCell cell;
+    cell.low = ground.height(k) - datum;
+    cell.measured = measured;
+    cell.fresh = ground.fresh(k);
+    cell.kind = class_of(kinds_[static_cast<std::size_t>(k)]);
+    // Which quarter the obstacle is in, write_obstacles() knows.
+    if (cell.kind == CellClass::obstacle) cell.kind = measured ? CellClass::ground : CellClass::unknown;
+    if (cell.kind == CellClass::drop) {
+      cell.cost = LocalCell::kImpassable;
+      cell.drop_probability = 255;
+    }
+    each_quarter(k, [&](LocalCell& quarter) { quarter = cell; });
+  }
+  for (const Drops::Cell& drop : terrain.drops().cells()) {
+    const auto probability = static_cast<std::uint8_t>(drop.probability * 255.0f);
+    each_quarter(static_cast<int>(drop.index), [&](LocalCell& quarter) {
+      quarter.drop_probability = std::max(quarter.drop_probability, probability);
+      quarter.cost = std::max(quarter.cost, cost_of(std::min(drop.probability, 0.99f)));
+    });
+  }
+  for (const Surface::Place& place : terrain.surface().places()) {
+    const int index = static_cast<int>(place.index);
+    const std::uint8_t cost = cost_of(place.cost);
+    const bool edge = place.layer == Layer::step && place.cost >= 1;
+    for (const int k : {index, index + 1, index + side, index + side + 1}) {
+      if (k == index || (k < static_cast<int>(ground.cells()) && ground.measured(k)))
+        each_quarter(k, [&](LocalCell& quarter) { quarter.cost = std::max(quarter.cost, cost); });
+      if (edge) break;
+    }
+  }
+}
+
+void LocalMapBuilder::write_obstacles(const TerrainMap& terrain, LocalMap& map) {
+  const auto datum = static_cast<float>(terrain.height_correction());
+  for (const ObstacleCells::Entry& entry : terrain.obstacles().entries()) {
+    if (!entry.again || !map.inside(entry.ix, entry.iy)) continue;
+    LocalCell& cell = map.cells_[LocalMap::index(entry.ix, entry.iy)];
+    cell.high = entry.z_high - datum;
+    cell.aside_x = aside_of(entry.mean_x - entry.x());
+    cell.aside_y = aside_of(entry.mean_y - entry.y());
+    cell.cost = LocalCell::kImpassable;
+    if (cell.kind != CellClass::drop) cell.kind = CellClass::obstacle;
+  }
+}
+
+template <class Change>
+void LocalMapBuilder::visit_disc(LocalMap& map, const Eigen::Vector2f& at, float radius, Change&& change) {
+  constexpr double kFarthest = 20.0;  // No place farther away touches the map, m.
+  const Eigen::Vector2d from = map.scan_.body.position.head<2>();
+  if (!((at.cast<double>() - from).norm() < kFarthest)) return;  // Also where it is no number.
+  for (int iy = LocalMap::cell(at.y() - radius); iy <= LocalMap::cell(at.y() + radius); ++iy)
+    for (int ix = LocalMap::cell(at.x() - radius); ix <= LocalMap::cell(at.x() + radius); ++ix) {
+      const float dx = LocalMap::centre(ix) - at.x(), dy = LocalMap::centre(iy) - at.y();
+      if (map.inside(ix, iy) && dx * dx + dy * dy <= radius * radius)
+        change(map.cells_[LocalMap::index(ix, iy)]);
+    }
+}
+
+void LocalMapBuilder::mark(const LocalMapOthers& others, LocalMap& map) {
+  for (const Eigen::Vector2f& place : others.moving)
+    visit_disc(map, place, kBesideMover, [](LocalCell& cell) {
+      if (cell.kind == CellClass::obstacle) cell.kind = CellClass::mover;
+    });
+  for (const Eigen::Vector3f& peer : others.peers)
+    if (peer.z() > 0.0f)
+      visit_disc(map, peer.head<2>(), std::min(peer.z(), kLargestRobot),
+                 [](LocalCell& cell) { cell.peer = true; });
+}
+
+void LocalMapBuilder::write_places(const TerrainMap& terrain, LocalMap& map) {
+  for (const TerrainCell& each : terrain.cells()) {
+    LocalPlace place{each.x, each.y, each.cost, each.age, class_of(each.layer)};
+    if (place.kind == CellClass::obstacle)
+      if (const LocalCell* cell = map.find(each.x, each.y); cell && cell->kind == CellClass::mover)
+        place.kind = CellClass::mover;
+    map.places_.push_back(place);
+  }
+}
+
+}  // namespace adit::nav

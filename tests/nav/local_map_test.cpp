@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "nav/local_map/local_map_builder.hpp"
+#include "tests/nav/box_world.hpp"
+#include "tests/nav/height_world.hpp"
+
+namespace adit::nav::test {
+namespace {
+
+using Kind = TerrainMap::Kind;
+
+/// A robot that drives and looks, and the maps that it makes.
+struct Driven {
+  Platform platform{wheeled()};
+  TerrainMap terrain{platform};
+  LocalMapBuilder builder{};
+  Pose2 pose{};
+  double time{100.0}, drift{0.0};
+  std::mt19937 random{7};
+  LocalMapOthers others{};
+  std::shared_ptr<const LocalMap> map{};
+
+  template <class Points>
+  void take(const Points& points, const Pose3& body) {
+    time += 0.1;
+    Pose3 seen = body;
+    seen.position.z() += drift;
+    terrain.add_scan(points, seen, time);
+    map = builder.make(terrain, {.stamp_s = time, .body = seen, .located = seen}, others);
+  }
+  void look(const BoxWorld& world, int scans = 1) {
+    for (int n = 0; n < scans; ++n)
+      take(world.scan(pose, platform.lidar_height, 16, 900, 0.01, random), Pose3::level(pose, 0));
+  }
+  void look(const HeightWorld& world) {
+    const Pose3 body = Pose3::level(pose, world.ground(pose.x, pose.y));
+    take(world.scan(platform, body, 16, 450, 0.01, random), body);
+  }
+};
+
+/// The class of a cell of the terrain's ground by its four quarters.
+Kind kind_of(const LocalMap& map, const Eigen::Vector2f& middle) {
+  std::array<int, kCellClasses> counts{};
+  for (const float dy : {-0.025f, 0.025f})
+    for (const float dx : {-0.025f, 0.025f})
+      ++counts[static_cast<std::size_t>(map.find(middle.x() + dx, middle.y() + dy)->kind)];
+  const auto has = [&](CellClass kind) { return counts[static_cast<std::size_t>(kind)] > 0; };
+  if (has(CellClass::drop)) return Kind::drop;
+  if (has(CellClass::obstacle) || has(CellClass::mover)) return Kind::obstacle;
+  if (has(CellClass::step)) return Kind::step;
+  if (has(CellClass::slope)) return Kind::slope;
+  return has(CellClass::ground) ? Kind::ground : Kind::unknown;
+}
+
+void expect_equal(const Driven& robot) {
+  const GroundGrid& ground = robot.terrain.ground();
+  std::vector<Kind> kinds;
+  robot.terrain.classify_cells(kinds);
+  int other = 0;
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    other += kind_of(*robot.map, ground.middle(static_cast<int>(k))) != kinds[k];
+  EXPECT_EQ(other, 0) << "of " << kinds.size();
+  const auto cells = robot.terrain.cells();
+  const auto places = robot.map->places();
+  ASSERT_EQ(places.size(), cells.size());
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    EXPECT_EQ(places[n].x, cells[n].x);
+    EXPECT_EQ(places[n].y, cells[n].y);
+    EXPECT_EQ(places[n].cost, cells[n].cost);
+    if (cells[n].cost < 1) continue;
+    const LocalCell* cell = robot.map->find(cells[n].x, cells[n].y);
+    ASSERT_NE(cell, nullptr);
+    EXPECT_TRUE(cell->impassable()) << cells[n].x << " " << cells[n].y;
+  }
+}
+
+BoxWorld room() {
+  BoxWorld world;
+  world.boxes = {{2.0, 2.2, -3, 1}, {-4, 6, 1.2, 1.4}, {-4, 6, -2.4, -2.2}, {0.9, 1.2, -1.4, -1.1, 0, 0.4}};
+  return world;
+}
+
+TEST(LocalMap, HoldsTheClassesOfTheTerrain) {
+  Driven robot;
+  const BoxWorld world = room();
+  for (int n = 0; n < 12; ++n) {
+    robot.look(world);
+    robot.pose = {0.07 * n, 0.02 * n, 0.05 * n};
+    expect_equal(robot);
+  }
+  EXPECT_TRUE(robot.map->find(2.0f, 0.5f)->impassable());
+  EXPECT_FALSE(robot.map->find(1.2f, 0.5f)->impassable());
+}
+
+TEST(LocalMap, HoldsDropsStepsAndSlopes) {
+  const HeightWorld world{[](double x, double y) {
+    if (x > 2.5 && y > 0.5) return HeightWorld::kBottomless;
+    if (y < -1.0) return 0.5 * (-1.0 - y);
+    return x < -1.5 ? 0.12 : 0.0;
+  }};
+  Driven robot;
+  std::array<int, kCellClasses> counts{};
+  for (int n = 0; n < 25; ++n) {
+    robot.pose.x = 0.05 * n;
+    robot.look(world);
+    expect_equal(robot);
+  }
+  robot.map->visit(4.0f,
+                   [&](int, int, const LocalCell& cell) { ++counts[static_cast<std::size_t>(cell.kind)]; });
+  for (const CellClass kind : {CellClass::ground, CellClass::drop, CellClass::slope})
+    EXPECT_GT(counts[static_cast<std::size_t>(kind)], 20) << static_cast<int>(kind);
+}
+
+TEST(LocalMap, AnObstacleHasItsExactPlaceAndHeight) {
+  Driven robot;
+  robot.look(room(), 5);
+  int seen = 0;
+  robot.map->visit(4.0f, [&](int ix, int iy, const LocalCell& cell) {
+    const float x = LocalMap::centre(ix), y = LocalMap::centre(iy);
+    if (cell.kind != CellClass::obstacle || x < 1.8f || x > 2.2f || y < -0.8f || y > 0.8f) return;
+    ++seen;
+    EXPECT_NEAR(x + cell.aside_x * LocalCell::kAsideUnit, 2.0f, 0.03f);
+    EXPECT_GT(cell.high, 0.2f);
+  });
+  EXPECT_GT(seen, 20);
+}
+
+TEST(LocalMap, HeightsAreThoseOfTheOdometry) {
+  Driven robot;
+  const BoxWorld world = room();
+  for (int n = 0; n < 40; ++n) {
+    robot.drift = 0.01 * n;  // Of the odometry's height.
+    robot.pose.x = 0.02 * n;
+    robot.look(world);
+  }
+  int measured = 0;
+  double sum = 0.0;
+  robot.map->visit(2.0f, [&](int, int, const LocalCell& cell) {
+    if (cell.kind != CellClass::ground || !cell.fresh) return;
+    ++measured;
+    sum += double{cell.low};
+  });
+  ASSERT_GT(measured, 100);
+  EXPECT_NEAR(sum / measured, robot.drift, 0.03);
+}
+
+TEST(LocalMap, WhatMovesAndWhereRobotsStandIsMarkedAndStays) {
+  Driven robot;
+  const Eigen::Vector2f moving(2.0f, 0.5f);
+  const Eigen::Vector3f peer(1.05f, -1.25f, 0.4f);
+  robot.others = {{&moving, 1}, {&peer, 1}};
+  robot.look(room(), 5);
+  EXPECT_TRUE(std::ranges::any_of(robot.map->places(),
+                                  [](const LocalPlace& place) { return place.kind == CellClass::mover; }));
+  int movers = 0, peers = 0, blocked = 0;
+  robot.map->visit(4.0f, [&](int ix, int iy, const LocalCell& cell) {
+    const Eigen::Vector2f at(LocalMap::centre(ix), LocalMap::centre(iy));
+    movers += cell.kind == CellClass::mover;
+    EXPECT_TRUE(cell.kind != CellClass::mover || (at - moving).norm() < 0.36f);
+    peers += cell.peer;
+    blocked += cell.peer && cell.impassable();
+    EXPECT_EQ(cell.peer, (at - peer.head<2>()).norm() <= 0.4f);
+  });
+  EXPECT_GT(movers, 5);
+  EXPECT_GT(peers, 150);
+  EXPECT_GT(blocked, 3) << "what is seen there stays";
+  expect_equal(robot);
+}
+
+TEST(LocalMap, BadPlacesOfOthersAreLeftOut) {
+  Driven robot;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::array peers{Eigen::Vector3f(nan, 0, 1), Eigen::Vector3f(1e30f, 0, 1),
+                         Eigen::Vector3f(0, 0, 1e30f), Eigen::Vector3f(3, 0, -1)};
+  const std::array moving{Eigen::Vector2f(nan, nan), Eigen::Vector2f(-1e30f, 1e30f)};
+  robot.others = {moving, peers};
+  robot.look(room(), 2);
+  int marked = 0;
+  robot.map->visit(6.0f, [&](int, int, const LocalCell& cell) { marked += cell.peer; });
+  EXPECT_LT(marked, 5100) << "a disc of 2 m at most";
+}
+
+TEST(LocalMap, AMapThatIsInUseNeverChanges) {
+  Driven robot;
+  robot.look(room(), 3);
+  const std::shared_ptr<const LocalMap> held = robot.map;
+  const std::size_t places = held->places().size();
+  const LocalCell before = *held->find(2.0f, 0.5f);
+  BoxWorld empty;
+  for (int n = 0; n < 60; ++n) {
+    robot.pose.x -= 0.1;
+    robot.look(empty);
+  }
+  EXPECT_EQ(held->places().size(), places);
+  EXPECT_EQ(held->find(2.0f, 0.5f)->kind, before.kind);
+  EXPECT_EQ(held->find(2.0f, 0.5f)->low, before.low);
+  EXPECT_FALSE(robot.map->find(2.0f, 0.5f) && robot.map->find(2.0f, 0.5f)->impassable());
+}
+
+TEST(LocalMap, OutsideThereIsNothing) {
+  Driven robot;
+  robot.pose = {-31.3, 17.2, 1.0};
+  robot.look(BoxWorld{});
+  EXPECT_NE(robot.map->find(-31.3f - 6.3f, 17.2f), nullptr);
+  EXPECT_NE(robot.map->find(-31.3f, 17.2f + 6.3f), nullptr);
+  EXPECT_EQ(robot.map->find(-31.3f - 6.5f, 17.2f), nullptr);
+  EXPECT_EQ(robot.map->find(-31.3f, 17.2f + 6.5f), nullptr);
+  EXPECT_EQ(robot.map->find(0, 0), nullptr);
+  EXPECT_EQ(LocalMap().find(0, 0), nullptr);
+}
+
+TEST(LocalMap, AFlyingRobotHasWhatIsAtTheHeightOfItsBody) {
+  const Platform platform = aerial();
+  AirMap air(platform);
+  LocalMapBuilder builder;
+  BoxWorld world;
+  world.boxes = {{2.0, 2.2, -1, 1}, {-2.2, -2.0, -1, 1, 0, 0.2}};
+  std::mt19937 random(3);
+  Pose3 body = Pose3::level({}, 1.2);
+  for (int n = 0; n < 3; ++n) {
+    auto points = world.scan({}, 1.2 + platform.lidar_height, 16, 900, 0.01, random);
+    for (auto& point : points) point.z() -= 1.2f;
+    air.add_scan(points, body, 0.1 * n);
+  }
+  const auto map = builder.make(air, {.stamp_s = 0.2, .body = body, .located = body});
+  ASSERT_EQ(map->places().size(), air.cells().size());
+  ASSERT_FALSE(air.cells().empty());
+  for (const LocalPlace& place : map->places()) {
+    EXPECT_GT(place.x, 1.8f) << "the low box is below";
+    EXPECT_TRUE(map->find(place.x, place.y)->impassable());
+  }
+}
+
+}  // namespace
+}  // namespace adit::nav::test
