@@ -15,6 +15,19 @@ constexpr float kBesideMover = 0.35f;
 
 constexpr float kLargestRobot = 2.0f;  ///< Radius, m: what other robots claim is bounded.
 
+/// Height of the terrain map's datum above the odometry frame, m. The map is level where the odometry is
+/// tilted about the robot.
+struct Datum {
+  Datum(const TerrainMap& terrain, const Pose3& body)
+      : height(static_cast<float>(terrain.height_correction())),
+        rise(terrain.tilt_error()),
+        from(body.position.head<2>().cast<float>()) {}
+  float at(const Eigen::Vector2f& place) const { return height + rise.dot(place - from); }
+
+  float height;
+  Eigen::Vector2f rise, from;
+};
+
 CellClass class_of(TerrainMap::Kind kind) {
   switch (kind) {
     case TerrainMap::Kind::unknown:
@@ -123,7 +136,7 @@ void LocalMapBuilder::write_ground(const TerrainMap& terrain, LocalMap& map) {
   static_assert(GroundGrid::kCell == 2 * LocalMap::kCell);
   const GroundGrid& ground = terrain.ground();
   const int side = ground.side();
-  const auto datum = static_cast<float>(terrain.height_correction());
+  const Datum datum(terrain, map.scan_.body);
   terrain.classify_cells(kinds_);
   const Eigen::Vector2f first = ground.middle(0);
   const int ix0 = LocalMap::cell(first.x() - LocalMap::kCell / 2),
@@ -138,7 +151,7 @@ void LocalMapBuilder::write_ground(const TerrainMap& terrain, LocalMap& map) {
   for (int k = 0; k < static_cast<int>(ground.cells()); ++k) {
     const bool measured = ground.measured(k);
     LocalCell cell;
-    cell.low = ground.height(k) - datum;
+    cell.low = ground.height(k) - datum.at(ground.middle(k));
     cell.measured = measured;
     cell.fresh = ground.fresh(k);
     cell.kind = class_of(kinds_[static_cast<std::size_t>(k)]);
@@ -170,11 +183,11 @@ void LocalMapBuilder::write_ground(const TerrainMap& terrain, LocalMap& map) {
 }
 
 void LocalMapBuilder::write_obstacles(const TerrainMap& terrain, LocalMap& map) {
-  const auto datum = static_cast<float>(terrain.height_correction());
+  const Datum datum(terrain, map.scan_.body);
   for (const ObstacleCells::Entry& entry : terrain.obstacles().entries()) {
     if (!entry.again || !map.inside(entry.ix, entry.iy)) continue;
     LocalCell& cell = map.cells_[LocalMap::index(entry.ix, entry.iy)];
-    cell.high = entry.z_high - datum;
+    cell.high = entry.z_high - datum.at({entry.x(), entry.y()});
     cell.aside_x = aside_of(entry.mean_x - entry.x());
     cell.aside_y = aside_of(entry.mean_y - entry.y());
     cell.cost = LocalCell::kImpassable;

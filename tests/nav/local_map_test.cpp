@@ -147,6 +147,32 @@ TEST(LocalMap, HeightsAreThoseOfTheOdometry) {
   EXPECT_NEAR(sum / measured, robot.drift, 0.03);
 }
 
+TEST(LocalMap, HeightsAreThoseOfATiltedOdometry) {
+  Driven robot;
+  BoxWorld world;
+  world.boxes = {{8.0, 8.2, -9, 9}};
+  double sum = 0.0, registered = 0.0;
+  int measured = 0;
+  for (int n = 0; n < 30; ++n) {
+    robot.pose.x = 0.02 * n;
+    const double tilt = n < 10 ? 0.0 : 0.02;  // Of the attitude that the odometry gives, nose down.
+    Pose3 body = Pose3::level(robot.pose, 0);
+    body.orientation = body.orientation * Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitY());
+    robot.take(world.scan(robot.pose, robot.platform.lidar_height, 16, 900, 0.01, robot.random), body);
+    if (n < 10 || n >= 14) continue;
+    registered = std::max(registered, double{robot.terrain.tilt_error().x()});
+    robot.map->visit(3.0f, [&](int ix, int, const LocalCell& cell) {
+      const double ahead = double{LocalMap::centre(ix)} - robot.pose.x;
+      if (cell.kind != CellClass::ground || !cell.fresh || ahead < 1.8) return;
+      ++measured;
+      sum += double{cell.low} + std::tan(tilt) * ahead;
+    });
+  }
+  ASSERT_GT(registered, 0.01) << "the terrain map stays level";
+  ASSERT_GT(measured, 100);
+  EXPECT_NEAR(sum / measured, 0.0, 0.015);
+}
+
 TEST(LocalMap, WhatMovesAndWhereRobotsStandIsMarkedAndStays) {
   Driven robot;
   const Eigen::Vector2f moving(2.0f, 0.5f);
