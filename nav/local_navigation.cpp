@@ -23,30 +23,33 @@ LocalNavigation::LocalNavigation(const Platform& platform, PlannerFactory planne
   if (platform.flies()) air_.emplace(platform);
   constexpr std::size_t kMaxPredicted = 8192;  // Maximum number of predicted places of movers.
   obstacles_.reserve(std::max<std::size_t>(terrain_.max_cells(), AirMap::kMax) + kMaxPredicted);
+  moving_.reserve(Tracker::kMax * Mover::kMax);
 }
 
-void LocalNavigation::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s) {
+void LocalNavigation::add_scan(const ScanPoints& scan, const LocalMapScan& at,
+                               std::span<const Eigen::Vector3f> peers) {
   if (air_)
-    air_->add_scan(scan, body, stamp_s);
+    air_->add_scan(scan, at.body, at.stamp_s);
   else
-    terrain_.add_scan(scan, body, stamp_s);
-  tracker_.look(scan, body, stamp_s);
-  has_scan_ = true;
+    terrain_.add_scan(scan, at.body, at.stamp_s);
+  tracker_.look(scan, at.body, at.stamp_s);
+  moving_.clear();
+  for (const Mover& mover : tracker_.movers())
+    if (mover.moves) moving_.insert(moving_.end(), mover.surface().begin(), mover.surface().end());
+  const LocalMapOthers others{moving_, peers};
+  map_ = air_ ? builder_.make(*air_, at, others) : builder_.make(terrain_, at, others);
 }
 
 Plan LocalNavigation::plan(const Target& target, const Pose2& pose, double stamp_s,
                            std::span<const Eigen::Vector2f> border, std::span<const Eigen::Vector3f> peers) {
-  if (!has_scan_) return {.stamp_s = stamp_s, .blocked = true};
+  if (!map_) return {.stamp_s = stamp_s, .blocked = true};
   const IntoPose into(pose);
   obstacles_.clear();
   const auto add = [&](float x, float y, float cost) {
     const Eigen::Vector2f at = into(x, y);
     obstacles_.push_back({at.x(), at.y(), cost});
   };
-  if (air_)
-    for (const Eigen::Vector2f& cell : air_->cells()) add(cell.x(), cell.y(), 1.0f);
-  else
-    for (const TerrainCell& cell : terrain_.cells()) add(cell.x, cell.y, cell.cost);
+  for (const LocalPlace& place : map_->places()) add(place.x, place.y, place.cost);
   Parts parts{obstacles_.size(), 0};
   for (const Eigen::Vector2f& place : border) add(place.x(), place.y(), 1.0f);
   parts.standing = obstacles_.size();
@@ -140,11 +143,8 @@ LocalNavigation::Hindrance LocalNavigation::hindrance(const Target& target, cons
   // A robot in a door stands beside the door's posts.
   if (std::isfinite(nearest_peer) && nearest_peer < nearest + kBesidePeer) return {Cause::peer, nearest_peer};
   if (!std::isfinite(nearest)) return {};
-  const Eigen::Vector2f at = (pose * Eigen::Vector2d(obstacles_[what].x, obstacles_[what].y)).cast<float>();
-  if (what >= parts.standing) return {Cause::mover, nearest};
-  for (const Mover& mover : tracker_.movers())
-    for (const Eigen::Vector2f& point : mover.surface())
-      if (mover.moves && (at - point).norm() < kNear) return {Cause::mover, nearest};
+  const bool moves = what < parts.terrain && map_->places()[what].kind == CellClass::mover;
+  if (moves || what >= parts.standing) return {Cause::mover, nearest};
   return {what >= parts.terrain ? Cause::border : Cause::fixed, nearest};
 }
 
@@ -156,23 +156,13 @@ double LocalNavigation::speed(const Pose2& pose, double stamp_s) {
   return dt > kShortest && dt < kLongest ? std::min(way / dt, platform_.max_speed) : 0.0;
 }
 
-void LocalNavigation::blocked(std::vector<Eigen::Vector2f>& cells) const {
-  cells.clear();
-  if (air_) {
-    cells.assign(air_->cells().begin(), air_->cells().end());
-    return;
-  }
-  for (const TerrainCell& cell : terrain_.cells())
-    if (cell.cost >= 1.0f) cells.emplace_back(cell.x, cell.y);
-}
-
 void LocalNavigation::clear() {
   terrain_.clear();
   if (air_) air_->clear();
   tracker_.clear();
   planner_ = make_planner_();
   way_back_.clear();
-  has_scan_ = false;
+  map_.reset();
   last_stamp_s_ = -std::numeric_limits<double>::infinity();
 }
 

@@ -5,11 +5,10 @@
 #include <optional>
 
 #include "core/geometry/scan_points.hpp"
+#include "nav/local_map/local_map_builder.hpp"
 #include "nav/planners/make_planner.hpp"
 #include "nav/recovery/escape.hpp"
 #include "nav/recovery/way_back.hpp"
-#include "nav/terrain/air_map.hpp"
-#include "nav/terrain/terrain_map.hpp"
 #include "nav/tracking/prediction.hpp"
 
 namespace adit::nav {
@@ -28,8 +27,12 @@ class LocalNavigation {
   /// null.
   LocalNavigation(const Platform& platform, PlannerFactory planner);
 
-  /// See TerrainMap::add_scan.
-  void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s);
+  /// See TerrainMap::add_scan. `peers`: centre and radius of the other robots, odometry frame, m.
+  void add_scan(const ScanPoints& scan, const LocalMapScan& at, std::span<const Eigen::Vector3f> peers = {});
+  /// The same of a robot whose odometry is all that it has, without others.
+  void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s) {
+    add_scan(scan, {.stamp_s = stamp_s, .body = body, .located = body});
+  }
   /// See TerrainMap::set_stairs.
   void set_stairs(std::span<const Staircase> stairs) { terrain_.set_stairs(stairs); }
   /// Plans over the terrain seen so far; see Planner::plan, and WayBack and Escape for the targets `back_up`
@@ -41,8 +44,8 @@ class LocalNavigation {
             std::span<const Eigen::Vector2f> border = {}, std::span<const Eigen::Vector3f> peers = {});
 
   const TerrainMap& terrain() const { return terrain_; }
-  /// Writes the centres of the impassable cells into `cells`, odometry frame, m.
-  void blocked(std::vector<Eigen::Vector2f>& cells) const;
+  /// What the scans so far show around the robot; null before the first one.
+  const std::shared_ptr<const LocalMap>& map() const { return map_; }
   std::span<const Mover> movers() const { return tracker_.movers(); }
   /// Forgets all state in the odometry frame, for example after a jump of the odometry: terrain, movers and
   /// the local planner's state.
@@ -69,11 +72,13 @@ class LocalNavigation {
   TerrainMap terrain_;
   std::optional<AirMap> air_{};  ///< Replaces the terrain map for flying robots.
   Tracker tracker_;
+  LocalMapBuilder builder_{};
+  std::shared_ptr<const LocalMap> map_{};
+  std::vector<Eigen::Vector2f> moving_{};  ///< Surfaces of what moves, odometry frame, m.
   std::unique_ptr<Planner> planner_;
   Escape escape_;
   WayBack way_back_;
   std::vector<ObstaclePoint> obstacles_{};  ///< Of one plan.
-  bool has_scan_{false};
   Pose2 last_pose_{};
   double last_stamp_s_{-std::numeric_limits<double>::infinity()};
 };

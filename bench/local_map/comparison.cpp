@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace adit::bench {
@@ -99,27 +98,13 @@ void Counts::operator+=(const Counts& other) {
   only_near += other.only_near;
   near_local += other.near_local;
   not_near += other.not_near;
-  builder_ms += other.builder_ms;
 }
 
 Comparison::Comparison(const Platform& platform)
     : detector_(platform, 3.0), step_(static_cast<float>(Traversability::of(platform).obstacle)) {}
 
 void Comparison::look(const agent::PlanJob& job, const nav::LocalNavigation& local) {
-  const agent::Scan& scan = *job.scan;
-  std::vector<Eigen::Vector2f> moving;
-  for (const nav::Mover& mover : local.movers())
-    if (mover.moves) moving.insert(moving.end(), mover.surface().begin(), mover.surface().end());
-  const auto begin = std::chrono::steady_clock::now();
-  map_ = builder_.make(local.terrain(),
-                       {.stamp_s = seconds(job.made.time_since_epoch()),
-                        .body = scan.body,
-                        .located = scan.located,
-                        .odom_epoch = job.odom_epoch,
-                        .jumps = scan.jumps},
-                       {moving, job.peers});
-  counts_.builder_ms +=
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  map_ = local.map();
   ++counts_.scans;
   compare_terrain(local.terrain());
   compare_near(job);
@@ -220,14 +205,11 @@ void Comparison::look(const agent::RouteJob& job, const nav::RoutePlanner& plann
 
 std::string tables_of(const std::string& name, const Counts& c) {
   std::string out = fmt::format(
-      "\n## {}\n\n{} scans, {} cells; of another class than in the terrain map: {}. Making a map: {:.2f} "
-      "ms.\n"
+      "\n## {}\n\n{} scans, {} cells; of another class than in the terrain map: {}.\n"
       "Ground that both measured: {}, of it more than {:.0f} cm apart: {:.1f} %.\n"
       "Places of the monitor within 2 m: {}, without an impassable cell beside them: {:.1f} %. Obstacles "
       "within 2 m: {}, without a place of the monitor beside them: {:.1f} %.\n",
-      name, c.scans, c.cells, c.other_class,
-      c.builder_ms / static_cast<double>(std::max<std::uint64_t>(1, c.scans)), c.heights,
-      100.0 * double{kHeightsApart},
+      name, c.scans, c.cells, c.other_class, c.heights, 100.0 * double{kHeightsApart},
       100.0 * static_cast<double>(c.heights_off) / static_cast<double>(std::max<std::uint64_t>(1, c.heights)),
       c.near,
       100.0 * static_cast<double>(c.only_near) / static_cast<double>(std::max<std::uint64_t>(1, c.near)),

@@ -41,7 +41,6 @@ struct Counts {
   /// Places of the collision monitor within 2 m, and those without an impassable cell of the local map within
   /// 0.1 m; impassable cells within 2 m, and those without a place of the monitor within 0.15 m.
   std::uint64_t near{}, only_near{}, near_local{}, not_near{};
-  double builder_ms{};  ///< Of making the local maps.
 
   void operator+=(const Counts& other);
 };
@@ -61,7 +60,6 @@ class Comparison {
   void compare_terrain(const nav::TerrainMap& terrain);
   void compare_near(const agent::PlanJob& job);
 
-  nav::LocalMapBuilder builder_{};
   nav::ObstacleDetector detector_;
   float step_;  ///< m
   std::shared_ptr<const nav::LocalMap> map_{};

@@ -58,9 +58,10 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Rehearses scenarios and compares the local map of each robot with its terrain map, its map of the "
       "routes and what its collision monitor saw, cell by cell."};
-  std::vector<std::string> files;
+  std::vector<std::string> files{"config/scenarios/demo.yaml", "bench/local_map/ring.yaml",
+                                 "config/scenarios/stairs.yaml", "config/scenarios/waypoint_corridor.yaml"};
   std::uint64_t seeds = 1, first = 1;
-  app.add_option("scenario", files, "files (.yaml)")->required()->check(CLI::ExistingFile);
+  app.add_option("scenario", files, "files (.yaml); default: demo, ring, stairs and waypoint_corridor");
   app.add_option("--seeds", seeds, "how many of each (default 1)")->check(CLI::Range(1, 1000));
   app.add_option("--first", first, "the first seed (default 1)");
   app.footer(

@@ -87,7 +87,7 @@ void Navigation::clear() {
   waiting_.reset();
   scanned_.reset();
   mapped_.reset();
-  obstacles_.reset();
+  local_map_.reset();
 }
 
 void Navigation::send(const Twist2& velocity) {
@@ -371,7 +371,7 @@ void Navigation::planned(const PlanJob& job, const Result<std::shared_ptr<const 
 }
 
 void Navigation::take(const PlanJob& job, const std::shared_ptr<const PlanAnswer>& answer) {
-  obstacles_ = {answer, &answer->obstacles};
+  local_map_ = answer->map;
   const bool for_stick =
       job.target.kind == nav::Target::Kind::direction && std::holds_alternative<Guidance>(motion_);
   if (for_stick)
@@ -451,11 +451,12 @@ void Navigation::go_on(const PlanJob& job, const nav::Plan& plan) {
 }
 
 bool Navigation::goal_free(const Eigen::Vector2d& place) const {
-  if (!obstacles_) return true;
+  if (!local_map_) return true;
   const Eigen::Vector2f at = frames_.to_odom(place).cast<float>();
   const float radius = static_cast<float>(std::min(params_.platform.width, params_.platform.length) / 2);
-  return std::ranges::none_of(
-      *obstacles_, [&](const Eigen::Vector2f& o) { return (o - at).squaredNorm() < radius * radius; });
+  return std::ranges::none_of(local_map_->places(), [&](const nav::LocalPlace& each) {
+    return each.cost >= 1.0f && (Eigen::Vector2f(each.x, each.y) - at).squaredNorm() < radius * radius;
+  });
 }
 
 }  // namespace adit::agent

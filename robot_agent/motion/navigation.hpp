@@ -163,7 +163,7 @@ class Navigation : public Component, public NavigationInput {
   std::vector<Eigen::Vector3f> peers_{};  // Centres and radii of the other robots, odometry frame, m.
   std::optional<Time> scanned_{};
   std::optional<Time> mapped_{};  // When the scan was received that the router answered last.
-  std::shared_ptr<const std::vector<Eigen::Vector2f>> obstacles_{};  // Odometry frame, m.
+  std::shared_ptr<const nav::LocalMap> local_map_{};
 };
 
 }  // namespace adit::agent

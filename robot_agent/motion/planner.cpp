@@ -64,12 +64,14 @@ void Planner::plan(const std::shared_ptr<const PlanJob>& job,
         if (std::exchange(maps->odom_epoch, job->odom_epoch) != job->odom_epoch) local_navigation.clear();
         const double stamp = seconds(job->made.time_since_epoch());
         local_navigation.set_stairs(job->stairs);
-        local_navigation.add_scan(job->scan->measured(), job->scan->body, stamp);
+        const Scan& scan = *job->scan;
+        local_navigation.add_scan(scan.measured(),
+                                  {stamp, scan.body, scan.located, job->odom_epoch, scan.jumps}, job->peers);
         if (watch) watch(*job, local_navigation);
         auto answer = std::make_shared<PlanAnswer>();
         if (job->target.kind != nav::Target::Kind::none)
           answer->plan = local_navigation.plan(job->target, job->pose, stamp, job->border, job->peers);
-        local_navigation.blocked(answer->obstacles);
+        answer->map = local_navigation.map();
         return answer;
       },
       [reply](Result<Answer> planned) { reply(std::move(planned)); });

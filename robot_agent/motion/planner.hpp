@@ -53,7 +53,7 @@ struct PlanJob {
 /// The result of one planning cycle.
 struct PlanAnswer {
   nav::Plan plan{};
-  std::vector<Eigen::Vector2f> obstacles{};  ///< Not passable, odometry frame, m.
+  std::shared_ptr<const nav::LocalMap> map{};  ///< With the scan of the job.
 };
 using PlanService = Service<std::shared_ptr<const PlanJob>, std::shared_ptr<const PlanAnswer>>;
 
