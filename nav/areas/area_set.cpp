@@ -133,7 +133,8 @@ const Area* AreaSet::find(std::string_view name) const {
 }
 
 bool AreaSet::operator==(const AreaSet& other) const {
-  return same(other) || (content_ && other.content_ && content_->areas == other.content_->areas);
+  return same(other) || (content_ && other.content_ && content_->areas == other.content_->areas &&
+                         content_->margins == other.content_->margins);
 }
 
 Result<void> AreaSet::add(Area area) {
@@ -283,6 +284,8 @@ double AreaSet::weight(const Eigen::Vector3d& place) const {
       weight *= area.weight;
   return weight;
 }
+
+double AreaSet::margin(std::size_t index) const { return content_->margins[index]; }
 
 double AreaSet::margin(const BorderPiece& piece) const {
   for (std::size_t i = 0; i < content_->areas.size(); ++i)

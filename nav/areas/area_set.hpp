@@ -30,6 +30,7 @@ class AreaSet {
   bool empty() const { return !content_; }
   std::span<const Area> all() const;
   const Area* find(std::string_view name) const;
+  /// Whether both have the same areas in the same order, with the same margins.
   bool operator==(const AreaSet& other) const;
   /// Whether both are copies of one set; quicker than ==.
   bool same(const AreaSet& other) const { return content_ == other.content_; }
@@ -75,6 +76,8 @@ class AreaSet {
   bool leaves_room(const Area& area) const;
   /// Factor of what is seen at a place: the product of the weights there; 0 where robots may not be.
   double weight(const Eigen::Vector3d& place) const;
+  /// The margin of all()[index], m.
+  double margin(std::size_t index) const;
   /// The margin of the areas whose border it is a piece of, m.
   double margin(const BorderPiece& piece) const;
   /// The border between permitted and forbidden ground at a height.

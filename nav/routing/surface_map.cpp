@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "nav/routing/forbidden_ground.hpp"
 #include "nav/routing/known_stairs.hpp"
 
 namespace adit::nav {
@@ -56,10 +58,11 @@ void SurfaceMap::clear() {
 }
 
 void SurfaceMap::set_areas(const AreaSet& areas) {
-  if (areas_.same(areas)) return;
-  areas_ = areas;
+  if (areas_ == areas) return;
+  const AreaSet before = std::exchange(areas_, areas);
+  const AreaChange change(before, areas_);
   for (int i = 0; i < size(); ++i)
-    if (tile(i).used) mark_dirty(i);
+    if (tile(i).used && change.concerns(tile(i))) mark_dirty(i);
 }
 
 void SurfaceMap::mark_stairs(const Staircase& stairs) {

@@ -72,8 +72,8 @@ class SurfaceMap {
   double team_cost(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
   /// Forgets the obstacles at a place: what was seen there was a robot.
   void clear_obstacle(const Eigen::Vector3d& place);
-  /// Sets the areas that no route leaves or enters, in the frame of the poses; all of the graph must be
-  /// rebuilt.
+  /// Sets the areas that no route leaves or enters, in the frame of the poses. Only tiles whose forbidden
+  /// ground may change are rebuilt, so equal areas cost nothing.
   void set_areas(const AreaSet& areas);
   const AreaSet& areas() const { return areas_; }
   /// Sets the staircases that are known, at most kMaxStairs, in the frame of the poses. Their steps become

@@ -12,7 +12,9 @@ inline constexpr double kRouteCell = 0.1;  ///< m
 inline constexpr float kRouteCellF = static_cast<float>(kRouteCell);
 inline constexpr int kTileSide = 16;  ///< cells
 inline constexpr int kTileArea = kTileSide * kTileSide;
-inline constexpr int kTileHalo = 8;    ///< Clearance is computed up to this many cells.
+inline constexpr int kTileHalo = 8;  ///< Clearance is computed up to this many cells.
+/// Side of the window of cells that a tile's costs are computed from, cells.
+inline constexpr int kTileWindow = kTileSide + 2 * kTileHalo;
 inline constexpr int kTileNodes = 16;  ///< Maximum number; the widest openings of a side remain.
 /// Height difference from which ground belongs to another floor, m.
 inline constexpr float kFloorSeparation = 1.5f;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "nav/routing/forbidden_ground.hpp"
 #include "nav/routing/known_stairs.hpp"
 
 namespace adit::nav {
@@ -124,7 +125,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
       for (int x = std::max(0, static_cast<int>(cx - r)); x < std::min<double>(kWindow, cx + r); ++x)
         if (std::hypot(x + 0.5 - cx, y + 0.5 - cy) <= r) solid_[in_window(x, y)] = true;
   }
-  if (!map.areas().empty()) forbid(map.areas(), tile);
+  if (!map.areas().empty()) forbid(map.areas(), tile, 0, 0, kWindow);
 }
 
 void TileBuilder::lay_stairs(const Staircase& stairs, const Tile& tile) {
@@ -160,20 +161,21 @@ void TileBuilder::price_aside(const Staircase& stairs, Tile& tile) const {
   });
 }
 
-// Forbidden ground, and what is nearer to it than robots may come, is an obstacle. The clearance counts from
-// the centres of cells, so those that the margin ends in count, too.
-void TileBuilder::forbid(const AreaSet& areas, const Tile& tile) {
-  constexpr double kReach = kRouteCell;
-  const auto place = [&](double x, double y) {
-    return Eigen::Vector3d((tile.tx * kTileSide - kTileHalo + x) * kRouteCell,
-                           (tile.ty * kTileSide - kTileHalo + y) * kRouteCell, tile.z);
-  };
-  const Eigen::Vector3d middle = place(kWindow / 2.0, kWindow / 2.0);
-  // Without a border in the window all of it is of one kind.
-  if (areas.permits(middle, kWindow * kRouteCell * M_SQRT1_2 + kReach)) return;
-  for (int y = 0; y < kWindow; ++y)
-    for (int x = 0; x < kWindow; ++x)
-      if (!areas.permits(place(x + 0.5, y + 0.5), kReach)) solid_[in_window(x, y)] = true;
+// Forbidden ground, and what is nearer to it than robots may come, is an obstacle. Squares with a border in
+// them are divided, so that few cells need a look of their own.
+void TileBuilder::forbid(const AreaSet& areas, const Tile& tile, int x0, int y0, int side) {
+  const Eigen::Vector3d middle((tile.tx * kTileSide - kTileHalo + x0 + side / 2.0) * kRouteCell,
+                               (tile.ty * kTileSide - kTileHalo + y0 + side / 2.0) * kRouteCell, tile.z);
+  const ForbiddenPart part =
+      side == 1 ? areas.permits(middle, kForbiddenReach) ? ForbiddenPart::none : ForbiddenPart::all
+                : forbidden_part(areas, middle, side);
+  if (part == ForbiddenPart::all)
+    for (int y = y0; y < y0 + side; ++y)
+      std::fill_n(solid_.begin() + static_cast<std::ptrdiff_t>(in_window(x0, y)), side, true);
+  if (part != ForbiddenPart::some) return;
+  const int half = side / 2;
+  for (const int y : {y0, y0 + half})
+    for (const int x : {x0, x0 + half}) forbid(areas, tile, x, y, half);
 }
 
 // Whether a step is the foot of an obstacle: beside an obstacle, a return of its foot passes for higher

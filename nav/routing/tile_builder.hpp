@@ -60,11 +60,12 @@ class TileBuilder {
   static bool said(const GroundCell& cell) {
     return cell.known && !cell.guessed() && (cell.sure || cell.measured);
   }
-  static constexpr int kWindow = kTileSide + 2 * kTileHalo;
+  static constexpr int kWindow = kTileWindow;
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
   void gather(const SurfaceMap& map, const Tile& tile);
   void gather_tile(const Tile& from, float z, int ox, int oy);
-  void forbid(const AreaSet& areas, const Tile& tile);
+  /// Marks the forbidden cells of a square of the window, whose side is a power of two.
+  void forbid(const AreaSet& areas, const Tile& tile, int x0, int y0, int side);
   void lay_stairs(const Staircase& stairs, const Tile& tile);
   void price_aside(const Staircase& stairs, Tile& tile) const;
   bool is_foot(std::size_t cell) const;
