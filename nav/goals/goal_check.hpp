@@ -32,21 +32,39 @@ class GoalCheck {
 
   /// Checks `place`, m; z NaN: the floor nearest to `floor`.
   Standing stand(const RoutePlanner& planner, const Eigen::Vector3d& place, double floor) const;
-  /// The nearest place within kNearest where the body can stand, on known ground only.
+  /// The nearest place within kNearest where the body can stand, on known ground only. Searches in rings of
+  /// 0.25 m, the nearest one first. Takes its checks of the footprint off `checks`, and ends with nothing
+  /// when none is left.
   std::optional<Eigen::Vector3d> nearest(const RoutePlanner& planner, const Eigen::Vector3d& place,
-                                         double floor) const;
-  /// Checks a goal and the route to it. `replace`: replaces an invalid goal by the nearest valid place.
+                                         double floor, int& checks) const;
+  /// Checks a goal and the route to it. `replace`: replaces an invalid goal by the nearest valid place, for
+  /// at most `checks` of the footprint; without a place within those the goal keeps its reason.
   GoalFinding check(RoutePlanner& planner, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                    bool replace) const;
+                    bool replace, int checks) const;
+  GoalFinding check(RoutePlanner& planner, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                    bool replace) const {
+    return check(planner, from, to, replace, budget());
+  }
+  /// Number of checks of the footprint that take 25 ms on an idle core, so that the answer comes within 100
+  /// ms on a loaded one.
+  int budget() const;
 
  private:
   /// What lies under the footprint at one heading.
   struct Ground;
   Ground under(const SurfaceMap& map, const Eigen::Vector3d& place, double yaw) const;
+  int headings() const { return body_.symmetric() ? kHeadings / 2 : kHeadings; }
+  /// Half the side of the square of cells around the footprint.
+  int cells_around() const { return static_cast<int>(body_.radius() / kRouteCell) + 1; }
+  /// Whether what the footprint covers at every heading rules the place out.
+  bool never_stands(const SurfaceMap& map, const Eigen::Vector3d& place) const;
+  /// Whether stand() is `standable`; takes its checks of the footprint off `checks`.
+  bool stands(const RoutePlanner& planner, const Eigen::Vector3d& place, double floor, int& checks) const;
   /// Whether a place itself is free, but obstacles lie on two opposite sides of it within the body's reach.
   bool is_between(const SurfaceMap& map, const Eigen::Vector3d& place) const;
 
   Footprint body_;
+  double always_covered_;  ///< Radius of the circle that the footprint covers at every heading, m.
   Traversability limits_;
   AreaSet areas_{};
   double reach_;  ///< Least distance of a goal from forbidden ground, m.

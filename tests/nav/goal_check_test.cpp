@@ -91,6 +91,68 @@ TEST_F(GoalCheckTest, ReplacesAGoalByTheNearestPlace) {
   EXPECT_GT(moved.length, 2.0);
 }
 
+/// A block of 6 x 6 m, and around it pillars that leave a tapered body no room at any of 16 headings, but at
+/// one place; on 64 x 64 tiles.
+class GoalCheckAmongPillars : public testing::Test {
+ protected:
+  GoalCheckAmongPillars() {
+    GridWorld world(1024, 1024);
+    for (int y = 2; y < 1024; y += 3)
+      for (int x = 2; x < 1024; x += 3) world.fill(x, x + 1, y, y + 1);
+    world.fill(670, 730, 670, 730);
+    world.fill(420, 432, 395, 407, false);
+    world.tell(planner);
+  }
+  static Platform tapered() {
+    Platform body = wheeled();
+    body.length = 1.0;
+    body.width = 0.5;
+    body.footprint = {{0.5, -0.1}, {0.5, 0.1}, {-0.5, 0.25}, {-0.5, -0.25}};
+    return body;
+  }
+
+  RoutePlanner planner{tapered()};
+  GoalCheck check{tapered()};
+};
+
+TEST_F(GoalCheckAmongPillars, EndsAtItsBudget) {
+  ASSERT_GT(planner.map().used(), 4000);
+  EXPECT_GT(check.budget(), 1000);
+  int checks = check.budget();
+  EXPECT_FALSE(check.nearest(planner, {60, 30, 0}, 0.0, checks).has_value());
+  EXPECT_EQ(checks, 0);
+  const GoalFinding found = check.check(planner, {2, 3, 0}, {60.25, 30.25, 0}, true);
+  EXPECT_EQ(found.standing, Standing::occupied);
+  EXPECT_FALSE(found.moved.has_value());
+}
+
+TEST_F(GoalCheckAmongPillars, ASolidBlockTakesNoChecks) {
+  int checks = check.budget();
+  EXPECT_FALSE(check.nearest(planner, {70, 70, 0}, 0.0, checks).has_value());
+  EXPECT_GT(checks, check.budget() * 9 / 10);
+}
+
+TEST_F(GoalCheckAmongPillars, FindsTheNearestPlaceWithinItsBudget) {
+  // Brute force over all places within 3 m.
+  const Eigen::Vector3d goal(41.2, 40.1, 0);
+  double nearest = 1e9;
+  for (int dy = -30; dy <= 30; ++dy)
+    for (int dx = -30; dx <= 30; ++dx)
+      if (const double range = std::hypot(dx, dy) * 0.1; range <= GoalCheck::kNearest && range < nearest)
+        if (check.stand(planner, goal + Eigen::Vector3d(0.1 * dx, 0.1 * dy, 0), 0.0) == Standing::standable)
+          nearest = range;
+  ASSERT_GT(nearest, 0.5);
+  ASSERT_LT(nearest, GoalCheck::kNearest);
+  int plenty = 1'000'000;
+  const auto found = check.nearest(planner, goal, 0.0, plenty);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR((*found - goal).norm(), nearest, 1e-9);
+  int just = 1'000'000 - plenty, less = just - 1;
+  EXPECT_EQ(check.nearest(planner, goal, 0.0, just), found);
+  EXPECT_EQ(just, 0);
+  EXPECT_FALSE(check.nearest(planner, goal, 0.0, less).has_value());
+}
+
 TEST_F(GoalCheckTest, AnUnseenGoalHasItsMetresThroughTheUnknown) {
   // A door in the wall at x = 10.
   world.fill(99, 100, 25, 35, false);
