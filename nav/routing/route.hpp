@@ -15,7 +15,7 @@ enum class RouteStatus : std::uint8_t {
   found,
   unreachable,    ///< Proven: the goal is not in the reachable space, unknown space included.
   start_blocked,  ///< No cell near the start is passable; nothing is proven.
-  too_far,        ///< The search exceeded its memory.
+  too_far,        ///< The search exceeded its memory, and no route leads through what it could hold.
 };
 
 /// Whether a body can stand at a place.

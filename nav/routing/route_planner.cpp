@@ -248,7 +248,7 @@ std::vector<float> RoutePlanner::costs(const Eigen::Vector3d& from, std::span<co
     indices.push_back(k);
   }
   std::vector<float> found(ends.size(), kUnreached);
-  if (!search_.costs(*start, ends, found)) return costs;
+  search_.costs(*start, ends, found);
   const auto start_leg = static_cast<float>((start->place - from).head<2>().norm());
   for (std::size_t i = 0; i < ends.size(); ++i)
     costs[indices[i]] =

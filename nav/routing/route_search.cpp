@@ -8,8 +8,13 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kTile = kTileSide * kRouteCell;    // m
-constexpr std::int64_t kMaxVirtualNodes = 262'144;  // Number of virtual nodes in unknown space: 17 MB.
+constexpr double kTile = kTileSide * kRouteCell;  // m
+
+int tile_at(double v) { return tile_of(route_cell(v)); }
+
+bool contains(const SurfaceMap::Extent& box, int tx, int ty) {
+  return tx >= box.x0 && tx <= box.x1 && ty >= box.y0 && ty <= box.y1;
+}
 
 int opposite(int side) { return (side + 2) % 4; }
 
@@ -44,28 +49,38 @@ RouteSearch::RouteSearch(SurfaceMap& map, TileBuilder& builder, const RouteParam
     : map_(map), builder_(builder), params_(params) {}
 
 std::size_t RouteSearch::memory() const {
-  return states_.capacity() * sizeof(State) + open_.capacity() * sizeof(Open);
+  return states_.capacity() * sizeof(State) + open_.capacity() * sizeof(Open) + squares_.memory();
 }
 
 int RouteSearch::level_of(double z) const {
   return static_cast<int>(std::lround((z - origin_z_) / double{kFloorSeparation}));
 }
 
-bool RouteSearch::in_box(int tx, int ty, int level) const {
-  return tx >= x0_ && tx < x0_ + width_ && ty >= y0_ && ty < y0_ + depth_ && level >= level0_ &&
-         level < level0_ + levels_;
+bool RouteSearch::is_usable(int tx, int ty) const {
+  return contains(usable_, tx, ty) && (map_.near_seen(tx, ty) || contains(between_, tx, ty));
 }
 
-RouteSearch::Id RouteSearch::virtual_id(const VirtualNode& g) const {
-  return virtual_from_ +
-         static_cast<Id>(((g.level - level0_) * depth_ + (g.ty - y0_)) * width_ + (g.tx - x0_)) * 4 +
-         static_cast<Id>(g.side);
+RouteSearch::Id RouteSearch::virtual_id(const VirtualNode& g) {
+  if (to_many_ || !params_.through_unknown) return kNone;
+  const UnknownSquares::Square square{g.tx, g.ty, g.level};
+  int index = squares_.find(square);
+  if (index < 0) {
+    if (!is_usable(g.tx, g.ty)) return kNone;
+    index = squares_.add(square);
+    if (index < 0) {
+      exceeded_ = true;
+      return kNone;
+    }
+    const std::size_t size = virtual_from_ + 4 * squares_.size();
+    if (states_.size() < size) states_.resize(size);
+  }
+  return virtual_from_ + static_cast<Id>(index * 4 + g.side);
 }
 
 RouteSearch::VirtualNode RouteSearch::virtual_node_of(Id id) const {
-  const int i = static_cast<int>(id - virtual_from_);
-  const int square = i / 4;
-  return {x0_ + square % width_, y0_ + square / width_ % depth_, level0_ + square / (width_ * depth_), i % 4};
+  const Id i = id - virtual_from_;
+  const UnknownSquares::Square& square = squares_[i / 4];
+  return {square.tx, square.ty, square.level, static_cast<int>(i % 4)};
 }
 
 Eigen::Vector3d RouteSearch::place(Id id) const {
@@ -81,54 +96,42 @@ Eigen::Vector3d RouteSearch::place(Id id) const {
   return {node.x, node.y, node.z};
 }
 
-// Computes the box of usable unknown space and the numbering of its nodes.
-bool RouteSearch::prepare(const RouteEnd& start, const RouteEnd& goal) {
+// Computes the boxes of usable unknown space and the numbering of the nodes.
+void RouteSearch::prepare(const RouteEnd& start, const RouteEnd& goal) {
   start_ = start;
   goal_ = goal;
   origin_z_ = start.place.z();
-  const int margin = std::max(1, static_cast<int>(params_.margin / kTile));
-  const auto tile_at = [](double v) { return tile_of(route_cell(v)); };
-  int x1 = std::max(tile_at(start.place.x()), tile_at(goal.place.x()));
-  int y1 = std::max(tile_at(start.place.y()), tile_at(goal.place.y()));
-  x0_ = std::min(tile_at(start.place.x()), tile_at(goal.place.x()));
-  y0_ = std::min(tile_at(start.place.y()), tile_at(goal.place.y()));
-  double z0 = std::min(start.place.z(), goal.place.z()), z1 = std::max(start.place.z(), goal.place.z());
-  if (const auto& e = map_.extent(); !e.empty()) {
-    x0_ = std::min(x0_, e.x0);
-    x1 = std::max(x1, e.x1);
-    y0_ = std::min(y0_, e.y0);
-    y1 = std::max(y1, e.y1);
-    z0 = std::min(z0, double{e.z0});
-    z1 = std::max(z1, double{e.z1});
-  }
-  x0_ -= margin;
-  y0_ -= margin;
-  const std::int64_t width = std::int64_t{x1} + margin - x0_ + 1, depth = std::int64_t{y1} + margin - y0_ + 1;
-  level0_ = level_of(z0);
   goal_level_ = level_of(goal.place.z());
-  const std::int64_t levels = level_of(z1) - level0_ + 1;
-  if (width > kMaxVirtualNodes || depth > kMaxVirtualNodes || width * depth * levels > kMaxVirtualNodes)
-    return false;
-  width_ = static_cast<int>(width);
-  depth_ = static_cast<int>(depth);
-  levels_ = static_cast<int>(levels);
-  virtual_from_ = static_cast<Id>(map_.size() * kTileNodes);
-  start_id_ = virtual_from_ + static_cast<Id>(width * depth * levels * 4);
+  const int margin = SurfaceMap::margin_tiles(params_);
+  const auto widen = [margin](SurfaceMap::Extent& box) {
+    box = {box.x0 - margin, box.x1 + margin, box.y0 - margin, box.y1 + margin};
+  };
+  between_ = {};
+  for (const Eigen::Vector3d& end : {start.place, goal.place})
+    between_.add(tile_at(end.x()), tile_at(end.y()));
+  usable_ = between_;
+  if (const auto& e = map_.extent(); !e.empty()) {
+    usable_.add(e.x0, e.y0);
+    usable_.add(e.x1, e.y1);
+  }
+  widen(between_);
+  widen(usable_);
+  start_id_ = static_cast<Id>(map_.size() * kTileNodes);
   goal_id_ = start_id_ + 1;
-  if (states_.size() < goal_id_ + 1) states_.resize(goal_id_ + 1);
+  virtual_from_ = goal_id_ + 1;
+  if (states_.size() < virtual_from_) states_.resize(virtual_from_);
+  squares_.clear();
+  exceeded_ = false;
   if (++search_ == 0) {
     std::fill(states_.begin(), states_.end(), State{});
     search_ = 1;
   }
   open_.clear();
   expanded_ = 0;
-  return true;
 }
 
 void RouteSearch::reach(Id id, float cost, Id from) {
-  const bool unseen = id < start_id_ && is_virtual(id);
-  if (unseen && (to_many_ || !params_.through_unknown)) return;
-  if (unseen && !map_.areas().empty() && !map_.areas().permits(place(id), 0.0)) return;
+  if (is_virtual(id) && !map_.areas().empty() && !map_.areas().permits(place(id), 0.0)) return;
   if (map_.has_team()) cost += static_cast<float>(map_.team_cost(place(from), place(id)));
   State& s = states_[id];
   if (s.search == search_ && (s.closed || s.cost <= cost)) return;
@@ -150,13 +153,14 @@ void RouteSearch::begin(const RouteEnd& start) {
       if (const float d = builder_.distance(goal_.cell); d < kUnreached) reach(goal_id_, d, start_id_);
     return;
   }
-  const int tx = tile_of(route_cell(start.place.x())), ty = tile_of(route_cell(start.place.y()));
+  const int tx = tile_at(start.place.x()), ty = tile_at(start.place.y());
   for (int side = 0; side < 4; ++side) {
     const Id id = virtual_id({tx, ty, 0, side});
+    if (id == kNone) return;
     reach(id, static_cast<float>((place(id) - start.place).norm()) * builder_.unknown_cost(), start_id_);
   }
-  if (goal_.tile < 0 && tx == tile_of(route_cell(goal_.place.x())) &&
-      ty == tile_of(route_cell(goal_.place.y())) && (goal_.any_floor || level_of(goal_.place.z()) == 0))
+  if (goal_.tile < 0 && tx == tile_at(goal_.place.x()) && ty == tile_at(goal_.place.y()) &&
+      (goal_.any_floor || level_of(goal_.place.z()) == 0))
     reach(goal_id_, static_cast<float>((goal_.place - start.place).norm()) * builder_.unknown_cost(),
           start_id_);
 }
@@ -165,7 +169,7 @@ RouteStatus RouteSearch::search(const RouteEnd& start, const RouteEnd& goal,
                                 std::vector<Eigen::Vector3d>& points) {
   points.clear();
   to_many_ = false;
-  if (!prepare(start, goal)) return RouteStatus::too_far;
+  prepare(start, goal);
   to_goal_.fill(kUnreached);
   if (goal.tile >= 0) {
     const Tile& tile = builder_.current(map_, goal.tile);
@@ -187,7 +191,7 @@ RouteStatus RouteSearch::search(const RouteEnd& start, const RouteEnd& goal,
     ++expanded_;
     expand(id, s.cost);
   }
-  return RouteStatus::unreachable;
+  return exceeded_ ? RouteStatus::too_far : RouteStatus::unreachable;
 }
 
 std::vector<RouteSearch::ManyGoal> RouteSearch::goals_by_tile(std::span<const RouteEnd> goals) {
@@ -205,10 +209,10 @@ std::vector<RouteSearch::ManyGoal> RouteSearch::goals_by_tile(std::span<const Ro
   return sorted;
 }
 
-bool RouteSearch::costs(const RouteEnd& start, std::span<const RouteEnd> goals, std::span<float> costs) {
+void RouteSearch::costs(const RouteEnd& start, std::span<const RouteEnd> goals, std::span<float> costs) {
   std::fill(costs.begin(), costs.end(), kUnreached);
-  if (goals.empty()) return true;
-  if (!prepare(start, {start.place, -1, 0})) return false;
+  if (goals.empty()) return;
+  prepare(start, {start.place, -1, 0});
   to_many_ = true;
   const std::vector<ManyGoal> sorted = goals_by_tile(goals);
   begin(start);  // Leaves the distances in the start's tile in the builder.
@@ -236,7 +240,6 @@ bool RouteSearch::costs(const RouteEnd& start, std::span<const RouteEnd> goals, 
     if (cheaper) certain = dearest();
     expand(id, s.cost);
   }
-  return true;
 }
 
 void RouteSearch::expand(Id id, float cost) {
@@ -304,8 +307,8 @@ void RouteSearch::cross(const Tile& tile, const TileNode& node, float cost, Id i
   if (met) return;
   const VirtualNode virtual_node{tile.tx + kSideX[node.side], tile.ty + kSideY[node.side], level_of(node.z),
                                  opposite(node.side)};
-  if (!in_box(virtual_node.tx, virtual_node.ty, virtual_node.level)) return;
   const Id to = virtual_id(virtual_node);
+  if (to == kNone) return;
   reach(to, cost + static_cast<float>((place(to) - here).head<2>().norm()) * builder_.unknown_cost(), id);
 }
 
@@ -329,8 +332,9 @@ void RouteSearch::enter_from_virtual(const VirtualNode& g, float cost, Id id) {
             id);
     }
   }
-  if (met || !in_box(tx, ty, g.level)) return;
+  if (met) return;
   const Id to = virtual_id({tx, ty, g.level, opposite(g.side)});
+  if (to == kNone) return;
   reach(to, cost + static_cast<float>((place(to) - here).norm()) * builder_.unknown_cost(), id);
 }
 
@@ -338,11 +342,11 @@ void RouteSearch::expand_virtual(const VirtualNode& g, float cost, Id id) {
   const Eigen::Vector3d here = place(id);
   for (int side = 0; side < 4; ++side) {
     if (side == g.side) continue;
-    const Id to = virtual_id({g.tx, g.ty, g.level, side});
+    const Id to = id - static_cast<Id>(g.side) + static_cast<Id>(side);
     reach(to, cost + static_cast<float>((place(to) - here).norm()) * builder_.unknown_cost(), id);
   }
-  if (goal_.tile < 0 && (goal_.any_floor || g.level == goal_level_) &&
-      g.tx == tile_of(route_cell(goal_.place.x())) && g.ty == tile_of(route_cell(goal_.place.y()))) {
+  if (goal_.tile < 0 && (goal_.any_floor || g.level == goal_level_) && g.tx == tile_at(goal_.place.x()) &&
+      g.ty == tile_at(goal_.place.y())) {
     const Eigen::Vector2d way = (goal_.place - here).head<2>();
     const float total = cost + static_cast<float>(way.norm()) * builder_.unknown_cost();
     const State& s = states_[goal_id_];
@@ -353,8 +357,9 @@ void RouteSearch::expand_virtual(const VirtualNode& g, float cost, Id id) {
   // level.
   if (g.level != goal_level_) {
     const int level = g.level + (goal_level_ > g.level ? 1 : -1);
-    if (in_box(g.tx, g.ty, level) && map_.at(g.tx, g.ty, level_z(level)) < 0)
-      reach(virtual_id({g.tx, g.ty, level, g.side}), cost + static_cast<float>(params_.level_cost), id);
+    if (map_.at(g.tx, g.ty, level_z(level)) < 0)
+      if (const Id to = virtual_id({g.tx, g.ty, level, g.side}); to != kNone)
+        reach(to, cost + static_cast<float>(params_.level_cost), id);
   }
   enter_from_virtual(g, cost, id);
 }
@@ -405,8 +410,8 @@ void RouteSearch::write_leg(Id from, Id to, std::vector<Eigen::Vector3d>& points
       return Eigen::Vector3d(node.x + kSideX[node.side] * kRouteCell, node.y + kSideY[node.side] * kRouteCell,
                              node.z);
     };
-    if (is_virtual(to) && to < start_id_ && a >= 0 && from != start_id_) points.push_back(beyond(from));
-    if (is_virtual(from) && from < start_id_ && b >= 0 && to != goal_id_) points.push_back(beyond(to));
+    if (is_virtual(to) && a >= 0 && from != start_id_) points.push_back(beyond(from));
+    if (is_virtual(from) && b >= 0 && to != goal_id_) points.push_back(beyond(to));
     points.push_back(place(to));
   }
 }

@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "nav/routing/route.hpp"
 #include "nav/routing/surface_map.hpp"
 #include "nav/routing/tile_builder.hpp"
+#include "nav/routing/unknown_squares.hpp"
 
 namespace adit::nav {
 
@@ -21,7 +23,9 @@ struct RouteEnd {
 };
 
 /// A* over the openings of the tiles. Unknown space without tiles has a virtual node on each side of each
-/// tile place: on the heights of the start and, through unknown space, also of a goal on another floor.
+/// tile place: on the heights of the start and, through unknown space, also of a goal on another floor. Those
+/// nodes are made when the search reaches them, near to tiles and in the box of start and goal, and at most
+/// UnknownSquares::kMax places of them: then the search goes on with those and through known space.
 class RouteSearch {
  public:
   RouteSearch(SurfaceMap& map, TileBuilder& builder, const RouteParams& params);
@@ -30,8 +34,8 @@ class RouteSearch {
   RouteStatus search(const RouteEnd& start, const RouteEnd& goal, std::vector<Eigen::Vector3d>& points);
   /// Costs from one place to many through known space, m; infinite where there is no route. One search from
   /// the start (Dijkstra) ends when the cost of every goal is certain. `start` and `goals` lie on tiles;
-  /// `costs`: one for each goal. Returns false when the map exceeds the memory of the search.
-  bool costs(const RouteEnd& start, std::span<const RouteEnd> goals, std::span<float> costs);
+  /// `costs`: one for each goal.
+  void costs(const RouteEnd& start, std::span<const RouteEnd> goals, std::span<float> costs);
   /// Number of nodes that the last search expanded.
   std::size_t expanded() const { return expanded_; }
   /// Memory of its buffers, bytes.
@@ -39,6 +43,7 @@ class RouteSearch {
 
  private:
   using Id = std::uint32_t;
+  static constexpr Id kNone = std::numeric_limits<Id>::max();
   struct State {
     float cost{0};
     Id from{0};
@@ -64,12 +69,13 @@ class RouteSearch {
     std::array<float, kTileNodes> from_node;
   };
 
-  bool prepare(const RouteEnd& start, const RouteEnd& goal);
+  void prepare(const RouteEnd& start, const RouteEnd& goal);
   std::vector<ManyGoal> goals_by_tile(std::span<const RouteEnd> goals);
   bool is_virtual(Id id) const { return id >= virtual_from_; }
-  Id virtual_id(const VirtualNode& g) const;
+  /// The node's id; it is made if it may be and is new. kNone: no route may lead there.
+  Id virtual_id(const VirtualNode& g);
   VirtualNode virtual_node_of(Id id) const;
-  bool in_box(int tx, int ty, int level) const;
+  bool is_usable(int tx, int ty) const;
   float level_z(int level) const { return static_cast<float>(origin_z_ + level * double{kFloorSeparation}); }
   int level_of(double z) const;
   Eigen::Vector3d place(Id id) const;
@@ -94,8 +100,11 @@ class RouteSearch {
   RouteParams params_;
   RouteEnd start_{}, goal_{};
   double origin_z_{0};
-  int x0_{0}, y0_{0}, level0_{0}, goal_level_{0}, width_{0}, depth_{0}, levels_{0};
-  Id virtual_from_{0}, start_id_{0}, goal_id_{0};
+  SurfaceMap::Extent usable_{}, between_{};  // Boxes of unknown space: all; around start and goal.
+  int goal_level_{0};
+  Id start_id_{0}, goal_id_{0}, virtual_from_{0};
+  UnknownSquares squares_{};
+  bool exceeded_{false};  ///< More squares were reached than there may be.
   std::vector<State> states_{};
   std::vector<Open> open_{};
   std::uint32_t search_{0};

@@ -53,6 +53,7 @@ void SurfaceMap::clear() {
   team_.clear();
   stairs_.clear();
   extent_ = {};
+  blocks_.clear();
   used_ = 0;
   last_ = -1;
 }
@@ -242,13 +243,10 @@ int SurfaceMap::create(int tx, int ty, float z) {
     t.beside = tile(head).beside;
   } else {
     heads_[key(tx, ty)] = last_first_ = index;
+    blocks_.add(tx, ty);
     link(index);
   }
-  if (extent_.empty())
-    extent_ = {tx, tx, ty, ty, z, z};
-  else
-    extent_ = {std::min(extent_.x0, tx), std::max(extent_.x1, tx), std::min(extent_.y0, ty),
-               std::max(extent_.y1, ty), std::min(extent_.z0, z),  std::max(extent_.z1, z)};
+  extent_.add(tx, ty);
   mark_dirty(index);
   return index;
 }
@@ -262,24 +260,39 @@ void SurfaceMap::link(int index) {
   }
 }
 
-// Removes all floors of the farthest place.
+// Removes all floors of the farthest places: several at once, because each look for them visits all tiles.
 void SurfaceMap::evict() {
-  int farthest = -1;
-  double most = -1;
+  constexpr int kShare = 256;  // One of so many tiles.
+  struct Place {
+    double range;
+    int head;
+  };
+  std::vector<Place> places;
+  places.reserve(heads_.size());
   for (int i = 0; i < size(); ++i) {
     const Tile& t = tile(i);
-    if (!t.used) continue;
-    const double d =
-        std::hypot((t.tx + 0.5) * kTileSide * kRouteCell - x_, (t.ty + 0.5) * kTileSide * kRouteCell - y_);
-    if (d > most) {
-      most = d;
-      farthest = i;
-    }
+    if (!t.used || first(t.tx, t.ty) != i) continue;
+    const double x = (t.tx + 0.5) * kTileSide * kRouteCell, y = (t.ty + 0.5) * kTileSide * kRouteCell;
+    places.push_back({std::hypot(x - x_, y - y_), i});
   }
-  const int head = first(tile(farthest).tx, tile(farthest).ty);
+  const auto count = std::min<std::size_t>(places.size(), std::max(1, params_.tiles / kShare));
+  const auto last = places.begin() + static_cast<std::ptrdiff_t>(count);
+  std::ranges::partial_sort(places, last, [](const Place& a, const Place& b) {
+    return a.range > b.range || (a.range == b.range && a.head < b.head);
+  });
+  for (auto place = places.begin(); place != last; ++place) remove_place(place->head);
+  extent_ = {};
+  for (auto place = last; place != places.end(); ++place)
+    extent_.add(tile(place->head).tx, tile(place->head).ty);
+  std::erase_if(queue_, [this](int i) { return !tile(i).used; });
+  last_ = -1;
+}
+
+void SurfaceMap::remove_place(int head) {
   for (std::size_t k = 0; k < 8; ++k)
     for (int i = tile(head).beside[k]; i >= 0; i = tile(i).next) tile(i).beside[kOpposite[k]] = -1;
   heads_.erase(key(tile(head).tx, tile(head).ty));
+  blocks_.remove(tile(head).tx, tile(head).ty);
   for (int i = head; i >= 0;) {
     Tile& t = tile(i);
     t.used = t.dirty = false;
@@ -287,8 +300,6 @@ void SurfaceMap::evict() {
     --used_;
     i = t.next;
   }
-  std::erase_if(queue_, [this](int i) { return !tile(i).used; });
-  last_ = -1;
 }
 
 void SurfaceMap::begin_scan(double x, double y) {

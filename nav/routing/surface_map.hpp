@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "core/geometry/staircase.hpp"
 #include "nav/areas/area_set.hpp"
 #include "nav/routing/route_params.hpp"
+#include "nav/routing/seen_blocks.hpp"
 #include "nav/routing/tile.hpp"
 
 namespace adit::nav {
@@ -38,7 +40,13 @@ class SurfaceMap {
  public:
   /// `same`: heights at one place that differ by at most this belong to one ground, m. It must exceed the
   /// height error at which a scan may take a return for ground, and be less than the height of a robot.
-  SurfaceMap(const RouteParams& params, float same) : params_(params), same_(same) {}
+  SurfaceMap(const RouteParams& params, float same)
+      : params_(params), same_(same), blocks_(margin_tiles(params)) {}
+
+  /// Usable unknown space around the known space, tiles.
+  static int margin_tiles(const RouteParams& params) {
+    return std::max(1, static_cast<int>(params.margin / (kTileSide * kRouteCell)));
+  }
 
   static constexpr std::size_t kMaxStairs = 32;
 
@@ -113,13 +121,18 @@ class SurfaceMap {
   /// The next tile that needs a rebuild, or -1.
   int next_dirty();
 
-  /// Bounding box of the map, in tiles.
+  /// Bounding box of the tiles in use, in tiles.
   struct Extent {
     int x0{0}, x1{-1}, y0{0}, y1{-1};
-    float z0{0}, z1{0};
     bool empty() const { return x1 < x0; }
+    void add(int tx, int ty) {
+      *this = empty() ? Extent{tx, tx, ty, ty}
+                      : Extent{std::min(x0, tx), std::max(x1, tx), std::min(y0, ty), std::max(y1, ty)};
+    }
   };
   const Extent& extent() const { return extent_; }
+  /// Whether a place has a tile or is at most margin_tiles() from one, or up to 7 more.
+  bool near_seen(int tx, int ty) const { return blocks_.near(tx, ty); }
   /// Forgets everything.
   void clear();
 
@@ -132,6 +145,7 @@ class SurfaceMap {
   int create(int tx, int ty, float z);
   void link(int index);
   void evict();
+  void remove_place(int head);
   /// Horizontal distance of a cell from the robot, m.
   double range_of(int ix, int iy) const;
   bool is_near(int ix, int iy) const;
@@ -158,6 +172,7 @@ class SurfaceMap {
   AreaSet areas_{};
   std::vector<Staircase> stairs_{};
   Extent extent_{};
+  SeenBlocks blocks_;
   int used_{0};
   std::uint16_t scan_{0};
   double x_{0}, y_{0};

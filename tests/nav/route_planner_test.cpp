@@ -334,6 +334,56 @@ TEST(RoutePlanner, StepsByPlatform) {
   }
 }
 
+/// A gallery of 1 km that is 4 m wide, at an angle to the axes, and falls by 3 per cent. `walls`: along both
+/// sides; else unknown space begins there.
+void add_deep_gallery(RoutePlanner& planner, bool walls) {
+  const Eigen::Vector2d along = Eigen::Vector2d(1.0, 0.9).normalized(), aside(-along.y(), along.x());
+  for (double s = 0; s <= 1000; s += 0.07)
+    for (double t = walls ? -2.2 : -2.0; t <= (walls ? 2.2 : 2.0); t += 0.07) {
+      const Eigen::Vector2d at = s * along + t * aside;
+      const Eigen::Vector3d place(at.x(), at.y(), -0.03 * s);
+      if (std::abs(t) > 2.0)
+        planner.set_obstacle(place, 2.0);
+      else
+        planner.set_ground(place);
+    }
+  planner.finish();
+}
+
+TEST(RoutePlanner, FindsAWayAlongADeepGallery) {
+  const Eigen::Vector2d along = Eigen::Vector2d(1.0, 0.9).normalized();
+  const auto at = [&](double s) { return Eigen::Vector3d(s * along.x(), s * along.y(), -0.03 * s); };
+  for (const bool walls : {true, false}) {
+    RoutePlanner planner(wheeled());
+    add_deep_gallery(planner, walls);
+    const Route route = planner.plan(at(2), at(995));
+    ASSERT_TRUE(route.found()) << "walls " << walls;
+    EXPECT_EQ(route.unknown_length, 0.0);
+    EXPECT_NEAR(route.length, 993, 10);
+    const std::vector<Eigen::Vector3d> goals{at(22), at(500), at(995)};
+    const std::vector<float> costs = planner.costs(at(2), goals);
+    EXPECT_NEAR(costs[0], 20, 4);
+    EXPECT_TRUE(std::isfinite(costs[1]));
+    EXPECT_TRUE(std::isfinite(costs[2]));
+  }
+}
+
+TEST(RoutePlanner, OneHighCellEndsNoSearch) {
+  GridWorld world(1500, 1500);
+  RoutePlanner planner(wheeled());
+  world.tell(planner);
+  planner.set_ground({75.05, 75.05, 31.0});
+  planner.finish();
+  const Eigen::Vector3d from(3, 3, 0), to(140, 120, 0);
+  const Route route = planner.plan(from, to);
+  ASSERT_TRUE(route.found());
+  EXPECT_NEAR(route.length, (to - from).norm(), 5);
+  const std::vector<Eigen::Vector3d> goals{{23, 3, 0}, to};
+  const std::vector<float> costs = planner.costs(from, goals);
+  EXPECT_NEAR(costs[0], 20, 2);
+  EXPECT_TRUE(std::isfinite(costs[1]));
+}
+
 TEST(RoutePlanner, BoundedMemory) {
   RouteParams params;
   params.tiles = 200;

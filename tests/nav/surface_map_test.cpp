@@ -60,6 +60,25 @@ TEST(SurfaceMap, EqualAreasMarkNoTile) {
   EXPECT_GT(dirty(planner.map()), 0) << "with another margin";
 }
 
+TEST(SurfaceMap, ItsExtentIsThatOfTheTilesInUse) {
+  RouteParams params;
+  params.tiles = 256;
+  SurfaceMap map(params, 0.3f);
+  for (int tx = 0; tx < 1000; ++tx) {
+    map.begin_scan((tx + 0.5) * 1.6, 0.0);
+    for (int ty = -1; ty <= 1; ++ty) map.see_free(tx * kTileSide, ty * kTileSide, 0.0f, 0.0f);
+    ASSERT_LE(map.used(), params.tiles);
+  }
+  EXPECT_EQ(map.extent().x1, 999);
+  EXPECT_GT(map.extent().x0, 900);
+  EXPECT_EQ(map.first(0, 0), -1);
+  EXPECT_GE(map.first(930, 0), 0);
+  EXPECT_TRUE(map.near_seen(930, 8));
+  EXPECT_TRUE(map.near_seen(1006, 0));
+  EXPECT_FALSE(map.near_seen(800, 0)) << "its tiles are gone";
+  EXPECT_FALSE(map.near_seen(930, 30));
+}
+
 TEST_F(SurfaceMapAreas, OneOfSeveralThatChangesMarksTheTilesAtItsBorder) {
   const Area site = rectangle("site", AreaKind::keep_in, 2, 2, 38, 38);
   const Area far = rectangle("far", AreaKind::keep_out, 28, 28, 34, 34);
