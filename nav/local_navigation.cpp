@@ -143,7 +143,9 @@ LocalNavigation::Hindrance LocalNavigation::hindrance(const Target& target, cons
   // A robot in a door stands beside the door's posts.
   if (std::isfinite(nearest_peer) && nearest_peer < nearest + kBesidePeer) return {Cause::peer, nearest_peer};
   if (!std::isfinite(nearest)) return {};
-  const bool moves = what < parts.terrain && map_->places()[what].kind == CellClass::mover;
+  const Eigen::Vector2f at = (pose * Eigen::Vector2d(obstacles_[what].x, obstacles_[what].y)).cast<float>();
+  const bool moves =
+      std::ranges::any_of(moving_, [&](const Eigen::Vector2f& place) { return (at - place).norm() < kNear; });
   if (moves || what >= parts.standing) return {Cause::mover, nearest};
   return {what >= parts.terrain ? Cause::border : Cause::fixed, nearest};
 }

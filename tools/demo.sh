@@ -88,15 +88,17 @@ number=0
 while read -r name platform x y yaw camera; do
   number=$((number + 1))
   printf '  %-14s %s, at %s %s\n' "robot $name" "$platform" "$x" "$y"
-  printf 'name: %s\nplatform: %s\npose: [%s, %s, %s]\nradio: {domain: %s}\nrobot_domain: %s\ntree: trees/robot.xml\nperception: slam\n' \
-    "$name" "$platform" "$x" "$y" "$yaw" "$domain" "$((domain + number))" > "$home/$name.yaml"
   if [ -n "$camera" ]; then  # A camera is part of a platform.
     printf '%s\nsensors: {%s}\n' "$(cat "$root/config/platforms/$platform.yaml")" "$camera" > "$home/$name.platform.yaml"
-    sed -i "s|^platform:.*|platform: $home/$name.platform.yaml|" "$home/$name.yaml"
+    platform="$home/$name.platform.yaml"
   fi
+  printf 'name: %s\nplatform: "%s"\npose: [%s, %s, %s]\nradio: {domain: %s}\nrobot_domain: %s\ntree: trees/robot.xml\nperception: slam\n' \
+    "$name" "$platform" "$x" "$y" "$yaw" "$domain" "$((domain + number))" > "$home/$name.yaml"
   "$bin/robot_agent" --supervised --config "$home/$name.yaml" > "$home/$name.log" 2>&1 &
   pids+=("$!")
 done < <(sed -n 's/^ *- {id: \([a-z0-9]*\), platform: \([a-z]*\), pose: \[\([^,]*\), *\([^,]*\), *\([^]]*\)\]\(, \(camera: {.*}\)\)\{0,1\}}.*/\1 \2 \3 \4 \5 \7/p' "$scenario")
+[ "$number" = "${#robots[@]}" ] ||
+  { echo "demo: ${scenario#"$root"/} has ${#robots[@]} robots, of which $number could be read" >&2; exit 1; }
 
 for name in "${operators[@]}"; do
   "$bin/basestation" --name "$name" --domain "$domain" up > "$home/$name.log" 2>&1 ||

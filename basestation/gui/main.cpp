@@ -60,7 +60,8 @@ std::optional<int> read_options(int argc, char** argv, Options& options) {
   app.add_option("--size", options.size, "Size of the window, WIDTHxHEIGHT in pixels");
   app.add_flag("--light", options.light, "Light theme, for sunlight; Ctrl+L changes it");
   app.add_flag("--camera", options.camera,
-               "Show the picture of the selected robot's camera, as the key C does");
+               "Show the picture of the selected robot's camera, as the key C does")
+      ->needs("--select");
   app.footer(
       "Examples:\n"
       "  adit_gui                                   the window of op1 on this machine\n"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -10,32 +11,33 @@
 
 namespace adit::nav {
 
-/// Class of a cell of the ground for one platform.
+/// Class of a cell of the ground for one platform: what is there. Whether the body may cross it, the cost
+/// says.
 enum class CellClass : std::uint8_t {
   unknown,   ///< No scan showed the ground or an obstacle there.
-  ground,    ///< Passable; LocalCell::cost rises with its roughness.
-  slope,     ///< Steep ground; impassable where the cost is LocalCell::kImpassable.
-  step,      ///< An edge; impassable where the cost is LocalCell::kImpassable.
+  ground,    ///< Passable ground.
+  slope,     ///< Steep ground, passable or not.
+  step,      ///< An edge or rough ground, passable or not.
   obstacle,  ///< Something stands or hangs there that the body cannot pass.
-  drop,      ///< The ground is missing.
-  mover,     ///< As `obstacle`, but it moves: it is no part of a map that lasts.
+  drop,      ///< The ground is missing, or ends here.
+  mover,  ///< An obstacle on or within 0.35 m of what moves: no evidence for or against anything that lasts.
 };
 inline constexpr std::size_t kCellClasses = 7;
 
-/// A cell of a LocalMap. Heights are those of the odometry frame, m.
+/// A cell of a LocalMap. Heights are those of the odometry frame, m. Where the ground was not measured, a
+/// cell can be `unknown` and still have the cost of the ground around it.
 struct LocalCell {
   static constexpr std::uint8_t kImpassable = 255;
   static constexpr float kAsideUnit = 0.05f / 250;  ///< m
   static constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-  float low{kNone};                  ///< Of the ground, measured or inherited from its neighbours; NaN: none.
-  float high{kNone};                 ///< Of the highest return from an obstacle; NaN: none.
-  CellClass kind{};                  ///< See CellClass.
-  std::uint8_t cost{};               ///< 1/254 of the platform's limit; kImpassable: no way.
-  std::uint8_t drop_probability{};   ///< That the ground is missing, 1/255; 0: less than a half.
-  bool measured : 1 {};              ///< `low` was measured.
-  bool fresh : 1 {};                 ///< `low` was measured by the newest scan.
-  bool peer : 1 {};                  ///< Within the outline of another robot of the team.
+  float low{kNone};      ///< Height of the ground, measured or inherited; NaN: none.
+  float high{kNone};     ///< Height of an obstacle's highest return; NaN: none, or the robot flies.
+  CellClass kind{};      ///< See CellClass.
+  std::uint8_t cost{};   ///< 1/254 of the platform's limit; kImpassable: the body cannot cross.
+  bool measured : 1 {};  ///< `low` was measured.
+  bool fresh : 1 {};     ///< `low` was measured by the newest scan.
+  bool peer : 1 {};      ///< Within the disc of another robot of the team.
   std::int8_t aside_x{}, aside_y{};  ///< Surface of the obstacle from the cell's centre, kAsideUnit.
 
   bool impassable() const { return cost == kImpassable; }
@@ -46,12 +48,13 @@ struct LocalPlace {
   float x{}, y{};    ///< Its exact position, m.
   float cost{1.0f};  ///< (0, 1]; 1: impassable.
   float age{};       ///< Time since an obstacle was first seen there, s; 0 for other classes.
-  CellClass kind{};
+  CellClass
+      kind{};  ///< As of the cell, but `drop` also where the ground is only probably missing (cost < 1).
 };
 
 /// The scan of which a LocalMap is the newest state.
 struct LocalMapScan {
-  double stamp_s{-std::numeric_limits<double>::infinity()};  ///< Its time, s.
+  double stamp_s{-std::numeric_limits<double>::infinity()};  ///< When it entered the map, s.
   Pose3 body{};  ///< base_link then, odometry frame, by the pose that controls the body.
   /// The same by the robot's own odometry: what is at p here is at located * body^-1 * p in maps that last.
   Pose3 located{};
@@ -66,18 +69,27 @@ class LocalMap {
  public:
   static constexpr float kCell = 0.05f;  ///< m
   static constexpr int kSide = 256;      ///< Cells along each axis.
+  /// Nothing is farther from the origin of the odometry frame, m.
+  static constexpr float kFarthest = 1e6f;
 
   const LocalMapScan& scan() const { return scan_; }
   bool inside(int ix, int iy) const {
-    return static_cast<unsigned>(ix - x0_) < kSide && static_cast<unsigned>(iy - y0_) < kSide;
+    const auto offset = [](int i, int from) {
+      return static_cast<unsigned>(i) - static_cast<unsigned>(from);
+    };
+    return offset(ix, x0_) < kSide && offset(iy, y0_) < kSide;
   }
   /// The cell with these coordinates, which must be inside.
   const LocalCell& at(int ix, int iy) const { return cells_[index(ix, iy)]; }
   /// The cell of a place, m; null outside of the map.
   const LocalCell* find(float x, float y) const {
+    if (!is_place(x, y)) return nullptr;
     const int ix = cell(x), iy = cell(y);
     return inside(ix, iy) ? &at(ix, iy) : nullptr;
   }
+  /// False also for what is no number.
+  static bool is_place(float x, float y) { return std::abs(x) < kFarthest && std::abs(y) < kFarthest; }
+  /// The coordinate of the cell of one that is_place(), m.
   static int cell(float metres) { return round_down(metres * (1.0f / kCell)); }
   static float centre(int i) { return (static_cast<float>(i) + 0.5f) * kCell; }
   /// Calls `visit(ix, iy, cell)` for each cell whose centre is at most `reach` (m) from the robot.
@@ -95,13 +107,18 @@ class LocalMap {
 
  private:
   friend class LocalMapBuilder;
+  bool is_placed() const {
+    return is_place(static_cast<float>(scan_.body.position.x()), static_cast<float>(scan_.body.position.y()));
+  }
   static std::size_t index(int ix, int iy) {
     return static_cast<std::size_t>((iy & (kSide - 1)) * kSide + (ix & (kSide - 1)));
   }
 
   LocalMapScan scan_{};
-  /// The cell with the smallest coordinates; nothing is inside of a map that was not made.
-  int x0_{std::numeric_limits<int>::min() / 2}, y0_{x0_};
+  static constexpr int kNowhere = std::numeric_limits<int>::min();
+
+  /// The cell with the smallest coordinates; nothing is inside of a map that has no place.
+  int x0_{kNowhere}, y0_{kNowhere};
   std::vector<LocalCell> cells_{};
   std::vector<LocalPlace> places_{};
 };

@@ -57,7 +57,7 @@ CellClass class_of(Layer layer) {
     case Layer::step:
       return CellClass::step;
     case Layer::roughness:
-      return CellClass::ground;
+      return CellClass::step;
   }
   return CellClass::unknown;
 }
@@ -74,12 +74,14 @@ std::int8_t aside_of(float metres) {
 }  // namespace
 
 struct LocalMapBuilder::Stock {
-  static constexpr std::size_t kMost = 4;
+  static constexpr std::size_t kMaxMaps = 2;  // Beside those in use.
   std::mutex mutex{};
   std::vector<std::unique_ptr<LocalMap>> maps{};
 };
 
-LocalMapBuilder::LocalMapBuilder() : stock_(std::make_shared<Stock>()) { stock_->maps.reserve(Stock::kMost); }
+LocalMapBuilder::LocalMapBuilder() : stock_(std::make_shared<Stock>()) {
+  stock_->maps.reserve(Stock::kMaxMaps);
+}
 
 std::shared_ptr<LocalMap> LocalMapBuilder::begin(const LocalMapScan& scan) {
   std::unique_ptr<LocalMap> map;
@@ -92,23 +94,29 @@ std::shared_ptr<LocalMap> LocalMapBuilder::begin(const LocalMapScan& scan) {
   }
   if (!map) map = std::make_unique<LocalMap>();
   map->scan_ = scan;
-  map->x0_ = LocalMap::cell(static_cast<float>(scan.body.position.x())) - LocalMap::kSide / 2;
-  map->y0_ = LocalMap::cell(static_cast<float>(scan.body.position.y())) - LocalMap::kSide / 2;
+  if (map->is_placed()) {
+    map->x0_ = LocalMap::cell(static_cast<float>(scan.body.position.x())) - LocalMap::kSide / 2;
+    map->y0_ = LocalMap::cell(static_cast<float>(scan.body.position.y())) - LocalMap::kSide / 2;
+  } else {
+    map->x0_ = map->y0_ = LocalMap::kNowhere;
+  }
   map->cells_.assign(std::size_t{LocalMap::kSide} * LocalMap::kSide, LocalCell{});
   map->places_.clear();
   return {map.release(), [stock = stock_](LocalMap* used) {
             std::unique_ptr<LocalMap> back(used);
             const std::lock_guard lock(stock->mutex);
-            if (stock->maps.size() < Stock::kMost) stock->maps.push_back(std::move(back));
+            if (stock->maps.size() < Stock::kMaxMaps) stock->maps.push_back(std::move(back));
           }};
 }
 
 std::shared_ptr<const LocalMap> LocalMapBuilder::make(const TerrainMap& terrain, const LocalMapScan& scan,
                                                       const LocalMapOthers& others) {
   auto map = begin(scan);
-  write_ground(terrain, *map);
-  write_obstacles(terrain, *map);
-  mark(others, *map);
+  if (map->is_placed()) {
+    write_ground(terrain, *map);
+    write_obstacles(terrain, *map);
+    mark(others, *map);
+  }
   write_places(terrain, *map);
   return map;
 }
@@ -117,13 +125,14 @@ std::shared_ptr<const LocalMap> LocalMapBuilder::make(const AirMap& air, const L
                                                       const LocalMapOthers& others) {
   auto map = begin(scan);
   for (const Eigen::Vector2f& place : air.cells()) {
+    if (!LocalMap::is_place(place.x(), place.y())) continue;
     const int ix = LocalMap::cell(place.x()), iy = LocalMap::cell(place.y());
     if (!map->inside(ix, iy)) continue;
     LocalCell& cell = map->cells_[LocalMap::index(ix, iy)];
     cell.kind = CellClass::obstacle;
     cell.cost = LocalCell::kImpassable;
   }
-  mark(others, *map);
+  if (map->is_placed()) mark(others, *map);
   for (const Eigen::Vector2f& place : air.cells()) {
     const LocalCell* cell = map->find(place.x(), place.y());
     map->places_.push_back({.x = place.x(), .y = place.y(), .kind = cell ? cell->kind : CellClass::obstacle});
@@ -136,6 +145,7 @@ void LocalMapBuilder::write_ground(const TerrainMap& terrain, LocalMap& map) {
   static_assert(GroundGrid::kCell == 2 * LocalMap::kCell);
   const GroundGrid& ground = terrain.ground();
   const int side = ground.side();
+  if (!ground.grown()) return;
   const Datum datum(terrain, map.scan_.body);
   terrain.classify_cells(kinds_);
   const Eigen::Vector2f first = ground.middle(0);
@@ -147,7 +157,6 @@ void LocalMapBuilder::write_ground(const TerrainMap& terrain, LocalMap& map) {
       for (const int dx : {0, 1})
         if (map.inside(ix + dx, iy + dy)) write(map.cells_[LocalMap::index(ix + dx, iy + dy)]);
   };
-  if (!ground.grown()) return;
   for (int k = 0; k < static_cast<int>(ground.cells()); ++k) {
     const bool measured = ground.measured(k);
     LocalCell cell;
@@ -157,27 +166,22 @@ void LocalMapBuilder::write_ground(const TerrainMap& terrain, LocalMap& map) {
     cell.kind = class_of(kinds_[static_cast<std::size_t>(k)]);
     // Which quarter the obstacle is in, write_obstacles() knows.
     if (cell.kind == CellClass::obstacle) cell.kind = measured ? CellClass::ground : CellClass::unknown;
-    if (cell.kind == CellClass::drop) {
-      cell.cost = LocalCell::kImpassable;
-      cell.drop_probability = 255;
-    }
     each_quarter(k, [&](LocalCell& quarter) { quarter = cell; });
   }
-  for (const Drops::Cell& drop : terrain.drops().cells()) {
-    const auto probability = static_cast<std::uint8_t>(drop.probability * 255.0f);
-    each_quarter(static_cast<int>(drop.index), [&](LocalCell& quarter) {
-      quarter.drop_probability = std::max(quarter.drop_probability, probability);
-      quarter.cost = std::max(quarter.cost, cost_of(std::min(drop.probability, 0.99f)));
-    });
-  }
-  for (const Surface::Place& place : terrain.surface().places()) {
-    const int index = static_cast<int>(place.index);
+  for (const TerrainCell& place : terrain.cells()) {
+    if (place.layer == Layer::obstacle) continue;
+    const int index = ground.window(place.x, place.y);
     const std::uint8_t cost = cost_of(place.cost);
-    const bool edge = place.layer == Layer::step && place.cost >= 1;
+    // These have a place for each of their cells; the others have one for every second cell.
+    const bool single = place.layer == Layer::drop || (place.layer == Layer::step && place.cost >= 1);
     for (const int k : {index, index + 1, index + side, index + side + 1}) {
       if (k == index || (k < static_cast<int>(ground.cells()) && ground.measured(k)))
-        each_quarter(k, [&](LocalCell& quarter) { quarter.cost = std::max(quarter.cost, cost); });
-      if (edge) break;
+        each_quarter(k, [&](LocalCell& quarter) {
+          quarter.cost = std::max(quarter.cost, cost);
+          if (place.layer != Layer::drop && quarter.kind == CellClass::ground)
+            quarter.kind = class_of(place.layer);
+        });
+      if (single) break;
     }
   }
 }

@@ -17,8 +17,8 @@ struct LocalMapOthers {
   std::span<const Eigen::Vector3f> peers{};   ///< Centre and radius of the other robots: marked, not deleted.
 };
 
-/// Makes LocalMaps of the layers of a terrain map, or of an air map. It has no thread and no clock. The
-/// memory of a map that is not used any more serves the next one.
+/// Makes LocalMaps of the layers of a terrain map, or of an air map. It has no thread and no clock, and its
+/// calls must not overlap. Any thread may release a map, and its memory serves a later one.
 class LocalMapBuilder {
  public:
   LocalMapBuilder();

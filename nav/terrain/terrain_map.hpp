@@ -44,8 +44,6 @@ class TerrainMap {
   std::size_t max_cells() const { return obstacles_.max_cells() + ground_.cells() * 9 / 4; }
   const GroundGrid& ground() const { return ground_; }
   const ObstacleCells& obstacles() const { return obstacles_; }
-  const Drops& drops() const { return drops_; }
-  const Surface& surface() const { return surface_; }
   /// Classifies each cell of the ground's window, by index. Classes that block win over those with a cost.
   void classify_cells(std::vector<Kind>& kinds) const;
   /// Height of the map's datum above that of the odometry frame, m: see GroundGrid.

@@ -167,6 +167,20 @@ TEST_F(FollowWindow, AfterDrivingTheMapShowsThePlaceOfBefore) {
   EXPECT_NEAR(map().camera().scale, before.scale, 1e-6);
 }
 
+TEST_F(FollowWindow, AMapThatWasMovedWhileDrivingStays) {
+  drive_r1();
+  const QPoint at = on_map(5, -1);
+  finger_down(at);
+  for (int step = 1; step < 6; ++step)
+    QTest::touchEvent(window(), finger).move(0, at + QPoint(20 * step, 9 * step), window());
+  finger_up(at + QPoint(100, 45));
+  ASSERT_EQ(control.follow()->robot(), "");
+  const Camera moved = map().camera();
+  let_go();
+  EXPECT_FALSE(map().fitting());
+  EXPECT_NEAR(map().camera().scale, moved.scale, 1e-6);
+}
+
 TEST_F(FollowWindow, NorthCanBeUpWhileDriving) {
   drive_r1();
   settle_layout();

@@ -63,7 +63,7 @@ TEST(Allocations, NoneInACycle) {
   }
 }
 
-TEST(Allocations, NoneInATerrainCycle) {
+TEST(Allocations, OneInATerrainCycle) {
   // Crates, a kerb and an edge come and go as the robot drives.
   const BoxWorld world{{{3, 3.3, -1, 1}, {-3, 9, 2, 2.2}, {4, 9, -2.2, -1, 0.0, 0.06}, {-3, 9, -2.2, -2}}};
   std::mt19937 random(4);

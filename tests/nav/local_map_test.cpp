@@ -66,13 +66,19 @@ void expect_equal(const Driven& robot) {
   const auto cells = robot.terrain.cells();
   const auto places = robot.map->places();
   ASSERT_EQ(places.size(), cells.size());
+  robot.map->visit(5.0f, [&](int, int, const LocalCell& cell) {
+    const bool stands = cell.kind == CellClass::obstacle || cell.kind == CellClass::mover;
+    EXPECT_TRUE(cell.impassable() || !(stands || cell.kind == CellClass::drop));
+    EXPECT_FALSE(cell.impassable() && cell.kind == CellClass::ground);
+  });
   for (std::size_t n = 0; n < cells.size(); ++n) {
     EXPECT_EQ(places[n].x, cells[n].x);
     EXPECT_EQ(places[n].y, cells[n].y);
     EXPECT_EQ(places[n].cost, cells[n].cost);
-    if (cells[n].cost < 1) continue;
     const LocalCell* cell = robot.map->find(cells[n].x, cells[n].y);
     ASSERT_NE(cell, nullptr);
+    EXPECT_GE(int{cell->cost}, static_cast<int>(cells[n].cost * 254.0f)) << cells[n].x << " " << cells[n].y;
+    if (cells[n].cost < 1) continue;
     EXPECT_TRUE(cell->impassable()) << cells[n].x << " " << cells[n].y;
   }
 }
@@ -110,7 +116,7 @@ TEST(LocalMap, HoldsDropsStepsAndSlopes) {
   }
   robot.map->visit(4.0f,
                    [&](int, int, const LocalCell& cell) { ++counts[static_cast<std::size_t>(cell.kind)]; });
-  for (const CellClass kind : {CellClass::ground, CellClass::drop, CellClass::slope})
+  for (const CellClass kind : {CellClass::ground, CellClass::drop, CellClass::slope, CellClass::step})
     EXPECT_GT(counts[static_cast<std::size_t>(kind)], 20) << static_cast<int>(kind);
 }
 
@@ -207,6 +213,51 @@ TEST(LocalMap, BadPlacesOfOthersAreLeftOut) {
   int marked = 0;
   robot.map->visit(6.0f, [&](int, int, const LocalCell& cell) { marked += cell.peer; });
   EXPECT_LT(marked, 5100) << "a disc of 2 m at most";
+}
+
+TEST(LocalMap, KnownStairsHaveNoCostOfTheirDrops) {
+  // A flight down, as a robot that climbs sees it from above.
+  const HeightWorld world{
+      [](double x, double) { return x < 1.5 ? 0.0 : -0.17 * std::floor((x - 1.5) / 0.3 + 1); }};
+  for (const bool known : {false, true}) {
+    Driven robot;
+    robot.platform = legged();
+    robot.terrain = TerrainMap(robot.platform);
+    for (int n = 0; n < 12; ++n) {
+      robot.pose.x = 0.05 * n;
+      if (known) {
+        const Staircase stairs{.foot = {1.5 + 12 * 0.3, 0, -12 * 0.17},
+                               .heading = M_PI,
+                               .rise = 0.17,
+                               .run = 0.3,
+                               .width = 6.0,
+                               .steps = 12};
+        robot.terrain.set_stairs(std::span(&stairs, 1));
+      }
+      robot.look(world);
+      expect_equal(robot);
+      int alone = 0;
+      robot.map->visit(4.0f, [&](int ix, int iy, const LocalCell& cell) {
+        const float x = LocalMap::centre(ix), y = LocalMap::centre(iy);
+        alone += cell.cost > 100 && std::ranges::none_of(robot.map->places(), [&](const LocalPlace& place) {
+                   return std::abs(place.x - x) < 0.16f && std::abs(place.y - y) < 0.16f;
+                 });
+      });
+      EXPECT_EQ(alone, 0) << known;
+    }
+  }
+}
+
+TEST(LocalMap, ABodyFarFromEverythingHasNoCells) {
+  Driven robot;
+  for (const double x : {1e9, -3e38, std::numeric_limits<double>::quiet_NaN()}) {
+    Pose3 body;
+    body.position.x() = x;
+    const auto map = LocalMapBuilder().make(TerrainMap(robot.platform), {.body = body, .located = body});
+    EXPECT_EQ(map->find(static_cast<float>(x), 0), nullptr);
+    EXPECT_EQ(map->find(0, 0), nullptr);
+  }
+  EXPECT_EQ(LocalMap().find(6e7f, 0), nullptr);
 }
 
 TEST(LocalMap, AMapThatIsInUseNeverChanges) {

@@ -128,8 +128,8 @@ void CameraGrid::see(const QString& robot, const QString& camera, bool in_sight)
   const CameraName name{robot.toStdString(), camera.toStdString()};
   const int tiles = in_sight_[name] += in_sight ? 1 : -1;
   if (tiles <= 0) in_sight_.erase(name);
-  // Tiles appear while their list changes.
-  if (!seen_.isActive()) seen_.start(0);
+  // Tiles appear while their list changes, and while it scrolls.
+  if (!seen_.isActive()) seen_.start(kSeenMs);
 }
 
 void CameraGrid::choose(const QString& robot, const QString& camera) {

@@ -29,6 +29,7 @@ class CameraGrid : public QObject {
   Q_PROPERTY(QString without READ without NOTIFY changed)
 
  public:
+  static constexpr int kSeenMs = 100;     ///< Until what came into sight is asked for.
   static constexpr int kTurnMs = 20'000;  ///< Of thumbnails that share a link: two pictures each.
 
   explicit CameraGrid(Control& control);
@@ -74,7 +75,7 @@ class CameraGrid : public QObject {
   CameraName sharp_{};
   std::string selected_{};  ///< The robot whose camera the selection made the sharp one.
   std::set<CameraName> off_{};
-  std::set<CameraName> ending_{};         ///< Those that this grid switched off, until the station answered.
+  std::set<CameraName> ending_{};         ///< Switched off by this grid; the station has not answered yet.
   std::map<CameraName, int> in_sight_{};  ///< Thumbnails of each, over all that show the grid.
   std::size_t turn_{};
   QTimer turns_{}, seen_{};

@@ -41,6 +41,7 @@ void MapFollow::refresh_drive() {
   const QString driven = control_.drive()->robot();
   if (driven == driven_) return;
   if (driven_.isEmpty()) before_ = robot_;
+  followed_to_the_end_ = robot_ == driven_;
   driven_ = driven;
   robot_ = is_driving() ? driven_ : before_;
   heading_up_ = is_driving() && heading_up_driving_;

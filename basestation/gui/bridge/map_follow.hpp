@@ -39,6 +39,8 @@ class MapFollow : public QObject {
   const QString& robot() const { return robot_; }
   bool heading_up() const { return heading_up_; }
   bool is_driving() const { return !driven_.isEmpty(); }
+  /// Whether the map still followed the driven robot when driving ended: the operator did not move it.
+  bool followed_to_the_end() const { return followed_to_the_end_; }
   /// The robot that is followed; null: none, or its place is not known.
   const station::Robot* target() const;
 
@@ -52,6 +54,7 @@ class MapFollow : public QObject {
   QString robot_{}, driven_{};
   QString before_{};  ///< The robot that was followed before driving began.
   bool heading_up_{false};
+  bool followed_to_the_end_{false};
   bool heading_up_driving_{true};  ///< As the operator chose it while driving.
 };
 

@@ -67,7 +67,7 @@ void WindowSettings::apply(const SettingsValues& values) {
   theme.set_scale(values.scale);
 }
 
-void WindowSettings::store() {
+void WindowSettings::store(bool all) {
   if (file_.isEmpty()) return;
   const SettingsRead from = read();
   if (!from.problems.empty()) {  // What is not understood is preserved.
@@ -76,14 +76,14 @@ void WindowSettings::store() {
   }
   const SettingsValues here = values();
   SettingsValues next = from.values;
-  if (here.light != known_.light) next.light = here.light;
-  if (here.glove != known_.glove) next.glove = here.glove;
-  if (here.scale != known_.scale) next.scale = here.scale;
-  known_ = here;
+  if (all || here.light != known_.light) next.light = here.light;
+  if (all || here.glove != known_.glove) next.glove = here.glove;
+  if (all || here.scale != known_.scale) next.scale = here.scale;
   QDir().mkpath(QFileInfo(file_).path());
   QSaveFile out(file_);
   const bool stored = out.open(QIODevice::WriteOnly) &&
                       out.write(QByteArray::fromStdString(settings_text(next, from.pad))) > 0 && out.commit();
+  if (stored) known_ = here;
   if (!stored) emit remark("settings are not stored: " + file_ + ": " + out.errorString());
 }
 
@@ -100,8 +100,7 @@ void WindowSettings::restoreDefaults() {
   applying_ = true;
   apply({});
   applying_ = false;
-  known_ = {.light = true, .glove = true, .scale = 0.0};  // All of them are written.
-  store();
+  store(true);
   emit changed();
 }
 

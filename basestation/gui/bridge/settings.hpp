@@ -42,8 +42,9 @@ class WindowSettings : public QObject {
   static SettingsValues values();
   static void apply(const SettingsValues& values);
   SettingsRead read();
-  /// Writes what changed here since the file was read or written: another window may have stored the rest.
-  void store();
+  /// Writes what changed here since the file was read or written, or all: another window may have stored the
+  /// rest.
+  void store(bool all = false);
 
   QString file_{};
   station::input::PadMapping pad_{};

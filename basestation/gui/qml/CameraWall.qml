@@ -48,6 +48,7 @@ Item {
             clip: true
             boundsBehavior: Flickable.StopAtBounds
             cacheBuffer: 0  // What is out of sight asks for nothing.
+            currentIndex: -1  // The current item would never leave sight.
             model: wall.grid.tiles
             cellWidth: wall.tileSize.width
             cellHeight: wall.tileSize.height

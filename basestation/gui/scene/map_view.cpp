@@ -172,6 +172,7 @@ void MapView::drive_changed(bool driving) {
   if (!driving) {
     if (!before_drive_) return;
     const auto [fitting, camera] = *std::exchange(before_drive_, {});
+    if (!control_->follow()->followed_to_the_end()) return;
     camera_.x = camera.x;
     camera_.y = camera.y;
     camera_.scale = camera.scale;

@@ -203,6 +203,7 @@ void MapView3D::drive_changed(bool driving) {
   if (!driving) {
     if (!before_drive_) return;
     const auto [fitting, camera] = *std::exchange(before_drive_, {});
+    if (!control_->follow()->followed_to_the_end()) return;
     camera_.target = camera.target;
     camera_.yaw = camera.yaw;
     camera_.distance = camera.distance;
