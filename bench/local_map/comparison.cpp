@@ -204,18 +204,17 @@ void Comparison::look(const agent::RouteJob& job, const nav::RoutePlanner& plann
 }
 
 std::string tables_of(const std::string& name, const Counts& c) {
+  const auto percent = [](std::uint64_t part, std::uint64_t all) {
+    return 100.0 * static_cast<double>(part) / static_cast<double>(std::max<std::uint64_t>(1, all));
+  };
   std::string out = fmt::format(
       "\n## {}\n\n{} scans, {} cells; of another class than in the terrain map: {}.\n"
       "Ground that both measured: {}, of it more than {:.0f} cm apart: {:.1f} %.\n"
       "Places of the monitor within 2 m: {}, without an impassable cell beside them: {:.1f} %. Obstacles "
       "within 2 m: {}, without a place of the monitor beside them: {:.1f} %.\n",
       name, c.scans, c.cells, c.other_class, c.heights, 100.0 * double{kHeightsApart},
-      100.0 * static_cast<double>(c.heights_off) / static_cast<double>(std::max<std::uint64_t>(1, c.heights)),
-      c.near,
-      100.0 * static_cast<double>(c.only_near) / static_cast<double>(std::max<std::uint64_t>(1, c.near)),
-      c.near_local,
-      100.0 * static_cast<double>(c.not_near) /
-          static_cast<double>(std::max<std::uint64_t>(1, c.near_local)));
+      percent(c.heights_off, c.heights), c.near, percent(c.only_near, c.near), c.near_local,
+      percent(c.not_near, c.near_local));
   out +=
       "\n| m | local | of these only local | routes | of these only routes |\n| --- | --- | --- | --- | --- "
       "|\n";

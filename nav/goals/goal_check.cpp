@@ -23,12 +23,20 @@ double covered_by(const Footprint& body) {
   return least;
 }
 
+/// The place; where its z is NaN on the floor nearest to `floor`, m.
+Eigen::Vector3d on_floor(const RoutePlanner& planner, const Eigen::Vector3d& place, double floor) {
+  Eigen::Vector3d at = place;
+  if (!std::isfinite(at.z())) at.z() = planner.ground(place.x(), place.y(), floor).value_or(floor);
+  return at;
+}
+
 }  // namespace
 
 struct GoalCheck::Ground {
   bool solid{}, hole{}, unknown{}, steep{};
   bool sure{true};      ///< Each height was measured from near.
   double nearest{1e9};  ///< Distance from the place to the nearest obstacle under the footprint, m.
+  bool carries() const { return !solid && !steep && !unknown; }
 };
 
 // Half a cell is the position error of an obstacle in the map.
@@ -93,8 +101,7 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
 }
 
 Standing GoalCheck::stand(const RoutePlanner& planner, const Eigen::Vector3d& place, double floor) const {
-  Eigen::Vector3d at = place;
-  if (!std::isfinite(at.z())) at.z() = planner.ground(place.x(), place.y(), floor).value_or(floor);
+  const Eigen::Vector3d at = on_floor(planner, place, floor);
   if (!areas_.permits(at, reach_)) return Standing::forbidden;
   if (flies_) return Standing::unseen;
   bool open = false, steep = false, hole = false;
@@ -154,13 +161,12 @@ bool GoalCheck::never_stands(const SurfaceMap& map, const Eigen::Vector3d& place
 
 bool GoalCheck::stands(const RoutePlanner& planner, const Eigen::Vector3d& place, double floor,
                        int& checks) const {
-  Eigen::Vector3d at = place;
-  if (!std::isfinite(at.z())) at.z() = planner.ground(place.x(), place.y(), floor).value_or(floor);
+  const Eigen::Vector3d at = on_floor(planner, place, floor);
   if (flies_ || !areas_.permits(at, reach_) || never_stands(planner.map(), at)) return false;
   for (int k = 0; k < headings() && checks > 0; ++k) {
     --checks;
     const Ground ground = under(planner.map(), at, 2.0 * M_PI * k / kHeadings);
-    if (!ground.solid && !ground.steep && !ground.unknown) return true;
+    if (ground.carries()) return true;
   }
   return false;
 }

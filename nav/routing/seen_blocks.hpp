@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <unordered_map>
 
+#include "nav/routing/tile.hpp"
+
 namespace adit::nav {
 
 /// Blocks of 8 x 8 places of tiles, for the question whether a place is near to one that has a tile.
@@ -13,15 +15,15 @@ class SeenBlocks {
 
   /// Records that a place got its first tile, or lost its last one.
   void add(int tx, int ty) {
-    if (places_[key(tx >> kShift, ty >> kShift)]++ == 0) count_around(tx >> kShift, ty >> kShift, 1);
+    if (places_[block_of(tx, ty)]++ == 0) count_around(tx >> kShift, ty >> kShift, 1);
   }
   void remove(int tx, int ty) {
-    const auto found = places_.find(key(tx >> kShift, ty >> kShift));
+    const auto found = places_.find(block_of(tx, ty));
     if (found == places_.end() || --found->second > 0) return;
     places_.erase(found);
     count_around(tx >> kShift, ty >> kShift, -1);
   }
-  bool near(int tx, int ty) const { return near_.contains(key(tx >> kShift, ty >> kShift)); }
+  bool near(int tx, int ty) const { return near_.contains(block_of(tx, ty)); }
   void clear() {
     places_.clear();
     near_.clear();
@@ -29,13 +31,11 @@ class SeenBlocks {
 
  private:
   static constexpr int kShift = 3, kSide = 1 << kShift;
-  static std::uint64_t key(int x, int y) {
-    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) | static_cast<std::uint32_t>(y);
-  }
+  static std::uint64_t block_of(int tx, int ty) { return grid_key(tx >> kShift, ty >> kShift); }
   void count_around(int x, int y, int more) {
     for (int v = y - reach_; v <= y + reach_; ++v)
       for (int u = x - reach_; u <= x + reach_; ++u)
-        if ((near_[key(u, v)] += more) == 0) near_.erase(key(u, v));
+        if ((near_[grid_key(u, v)] += more) == 0) near_.erase(grid_key(u, v));
   }
 
   int reach_;  // Blocks.

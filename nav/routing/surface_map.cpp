@@ -59,8 +59,8 @@ void SurfaceMap::clear() {
 }
 
 void SurfaceMap::set_areas(const AreaSet& areas) {
-  if (areas_ == areas) return;
-  const AreaSet before = std::exchange(areas_, areas);
+  const AreaSet before = std::exchange(areas_, areas);  // So that a copy of `areas` is quickly the same.
+  if (before == areas_) return;
   const AreaChange change(before, areas_);
   for (int i = 0; i < size(); ++i)
     if (tile(i).used && change.concerns(tile(i))) mark_dirty(i);
@@ -129,7 +129,7 @@ void SurfaceMap::set_stairs(std::span<const Staircase> stairs) {
 }
 
 int SurfaceMap::first(int tx, int ty) const {
-  const auto found = heads_.find(key(tx, ty));
+  const auto found = heads_.find(grid_key(tx, ty));
   return found == heads_.end() ? -1 : found->second;
 }
 
@@ -242,7 +242,7 @@ int SurfaceMap::create(int tx, int ty, float z) {
     tile(i).next = index;
     t.beside = tile(head).beside;
   } else {
-    heads_[key(tx, ty)] = last_first_ = index;
+    heads_[grid_key(tx, ty)] = last_first_ = index;
     blocks_.add(tx, ty);
     link(index);
   }
@@ -291,7 +291,7 @@ void SurfaceMap::evict() {
 void SurfaceMap::remove_place(int head) {
   for (std::size_t k = 0; k < 8; ++k)
     for (int i = tile(head).beside[k]; i >= 0; i = tile(i).next) tile(i).beside[kOpposite[k]] = -1;
-  heads_.erase(key(tile(head).tx, tile(head).ty));
+  heads_.erase(grid_key(tile(head).tx, tile(head).ty));
   blocks_.remove(tile(head).tx, tile(head).ty);
   for (int i = head; i >= 0;) {
     Tile& t = tile(i);

@@ -137,10 +137,6 @@ class SurfaceMap {
   void clear();
 
  private:
-  static std::uint64_t key(int tx, int ty) {
-    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(tx)) << 32) |
-           static_cast<std::uint32_t>(ty);
-  }
   int surface_layer(int ix, int iy, float z);
   int create(int tx, int ty, float z);
   void link(int index);

@@ -90,6 +90,11 @@ struct Tile {
   }
 };
 
+/// Packs two coordinates into one key, for a hash table.
+constexpr std::uint64_t grid_key(int x, int y) {
+  return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) | static_cast<std::uint32_t>(y);
+}
+
 /// Position of the obstacle in a blocked cell, m.
 inline Eigen::Vector2d obstacle_place(int ix, int iy, const GroundCell& cell) {
   return {(ix + 0.5) * kRouteCell + cell.aside_x * double{kAsideUnit},

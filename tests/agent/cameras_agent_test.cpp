@@ -114,13 +114,15 @@ class Cameras : public testing::Test {
     while (*waits) bench->run(10ms);
     return out;
   }
-  /// Samples on the radio's topic of live pictures that the robot has sent so far.
-  std::uint64_t pieces() const {
+  /// What the robot has sent so far on the radio's topic of live pictures.
+  std::uint64_t sent(std::uint64_t wire::TopicCount::*what) const {
     std::uint64_t sum = 0;
     for (const auto& count : bench->radio().counters().topics)
-      if (count.topic == wire::topics::kCamera.name) sum += count.samples_out;
+      if (count.topic == wire::topics::kCamera.name) sum += count.*what;
     return sum;
   }
+  std::uint64_t pieces() const { return sent(&wire::TopicCount::samples_out); }
+  std::uint64_t bytes() const { return sent(&wire::TopicCount::bytes_out); }
 
   std::unique_ptr<AgentBench> bench{};
   std::unique_ptr<wire::Participant> driver{}, radio{};
@@ -309,12 +311,6 @@ TEST_F(Cameras, TenThatAreLookedAtShareAThinLink) {
   std::map<std::string, std::uint64_t> newest;
   double oldest = 0.0;
   std::uint64_t bytes_before = 0;
-  const auto bytes = [&] {
-    std::uint64_t sum = 0;
-    for (const auto& count : bench->radio().counters().topics)
-      if (count.topic == wire::topics::kCamera.name) sum += count.bytes_out;
-    return sum;
-  };
   for (int second = 0; second < 120; ++second) {
     if (second == 20) bytes_before = bytes(), shown.clear();
     for (const CameraConfig& camera : ten) {

@@ -10,13 +10,6 @@ using testing::SizeIs;
 
 class AreaWindow : public Window {
  protected:
-  void drag(const QPoint& from, const QPoint& to) {
-    finger_down(from);
-    for (int i = 1; i <= 4; ++i)
-      QTest::touchEvent(window(), finger).move(0, from + (to - from) * i / 4, window());
-    finger_up(to);
-    settle();
-  }
   void begin(const QString& robot) {
     control.select(robot, false);
     settle_layout();

@@ -53,7 +53,7 @@ double thumbnail_bits(const CameraPlan& plan) {
 
 TEST(CameraPlan, ThumbnailsOutOfSightTakeNoTurn) {
   Site site(20, 30e3, "radio");
-  const std::set<CameraName> in_sight{{"r1", "front"}, {"r18", "front"}, {"r20", "front"}};
+  const std::multiset<CameraName> in_sight{{"r1", "front"}, {"r18", "front"}, {"r20", "front"}};
   const CameraPlan plan = camera_plan(
       {.world = &site.world, .net = &site.net, .sharp = site.sharp, .off = {}, .in_sight = &in_sight});
   EXPECT_THAT(Site::robots_of(plan, CameraRole::sharp), ElementsAre("r1"));

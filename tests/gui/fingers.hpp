@@ -79,6 +79,13 @@ class Fingers : public testing::Test {
     finger_up(at);
     settle();
   }
+  void drag(const QPoint& from, const QPoint& to) {
+    finger_down(from);
+    for (int i = 1; i <= 4; ++i)
+      QTest::touchEvent(window(), finger).move(0, from + (to - from) * i / 4, window());
+    finger_up(to);
+    settle();
+  }
   void press_slot(const QString& slot) {
     settle_layout();
     touch(middle("button_" + slot));

@@ -97,10 +97,7 @@ TEST_F(FollowWindow, MovingTheMapEndsIt) {
   control.select("r1", false);
   QTest::keyClick(window(), Qt::Key_F);
   const QPoint at = on_map(2, 0) + QPoint(60, 60);
-  finger_down(at);
-  for (int step = 1; step < 6; ++step)
-    QTest::touchEvent(window(), finger).move(0, at + QPoint(20 * step, 0), window());
-  finger_up(at + QPoint(100, 0));
+  drag(at, at + QPoint(100, 0));
   EXPECT_EQ(control.follow()->robot(), "");
 }
 
@@ -152,10 +149,7 @@ TEST_F(FollowWindow, WhileDrivingTheHeadingIsUpAndTheRobotIsLargeEnough) {
 TEST_F(FollowWindow, AfterDrivingTheMapShowsThePlaceOfBefore) {
   QTest::keyClick(window(), Qt::Key_Plus);
   const QPoint at = on_map(2, 0) + QPoint(60, 60);
-  finger_down(at);
-  for (int step = 1; step < 6; ++step)
-    QTest::touchEvent(window(), finger).move(0, at + QPoint(20 * step, 9 * step), window());
-  finger_up(at + QPoint(100, 45));
+  drag(at, at + QPoint(100, 45));
   const Camera before = map().camera();
   ASSERT_FALSE(map().fitting());
   drive_r1();
@@ -170,10 +164,7 @@ TEST_F(FollowWindow, AfterDrivingTheMapShowsThePlaceOfBefore) {
 TEST_F(FollowWindow, AMapThatWasMovedWhileDrivingStays) {
   drive_r1();
   const QPoint at = on_map(5, -1);
-  finger_down(at);
-  for (int step = 1; step < 6; ++step)
-    QTest::touchEvent(window(), finger).move(0, at + QPoint(20 * step, 9 * step), window());
-  finger_up(at + QPoint(100, 45));
+  drag(at, at + QPoint(100, 45));
   ASSERT_EQ(control.follow()->robot(), "");
   const Camera moved = map().camera();
   let_go();

@@ -120,10 +120,7 @@ TEST_F(SolidWindow, RobotsMoveWithoutPaintingTheVoxelsAgain) {
 TEST_F(SolidWindow, OneFingerTurnsTheMapAndTwoMoveIt) {
   const OrbitCamera before = solid().camera();
   const QPoint at = solid().mapToScene({300, 200}).toPoint();
-  finger_down(at);
-  for (int i = 1; i <= 5; ++i) QTest::touchEvent(window(), finger).move(0, at + QPoint(20 * i, 0), window());
-  finger_up(at + QPoint(100, 0));
-  settle();
+  drag(at, at + QPoint(100, 0));
   EXPECT_NE(solid().camera().yaw, before.yaw);
   EXPECT_EQ(solid().camera().target, before.target);
   const OrbitCamera turned = solid().camera();

@@ -9,6 +9,7 @@
 #include "nav/explore/route_ground.hpp"
 #include "nav/goals/goal_check.hpp"
 #include "nav/local_navigation.hpp"
+#include "tests/nav/area_sets.hpp"
 #include "tests/nav/route_world.hpp"
 #include "tests/nav/scanned_monitor.hpp"
 
@@ -19,15 +20,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Area area(const char* name, AreaKind kind, std::vector<Eigen::Vector2d> corners) {
   return Area{.name = name, .kind = kind, .corners = std::move(corners)};
-}
-
-AreaSet set_of(const std::vector<Area>& areas) {
-  AreaSet set;
-  for (const Area& each : areas) {
-    const auto valid = checked(each);
-    EXPECT_TRUE(valid && set.add(*valid)) << each.name;
-  }
-  return set;
 }
 
 std::string refusal(const Area& bad) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "nav/areas/area_set.hpp"
+#include "tests/nav/area_sets.hpp"
 #include "tests/nav/route_world.hpp"
 
 namespace adit::nav::test {
@@ -14,15 +15,6 @@ int dirty(const SurfaceMap& map) {
   int count = 0;
   for (int i = 0; i < map.size(); ++i) count += map.tile(i).used && map.tile(i).dirty;
   return count;
-}
-
-AreaSet set_of(const std::vector<Area>& areas) {
-  AreaSet set;
-  for (const Area& each : areas) {
-    const auto valid = checked(each);
-    EXPECT_TRUE(valid && set.add(*valid)) << each.name;
-  }
-  return set;
 }
 
 Area rectangle(const char* name, AreaKind kind, double x0, double y0, double x1, double y1) {

@@ -81,13 +81,11 @@ void CameraGrid::follow_selection() {
 void CameraGrid::refresh() {
   if (!is_shown()) return;
   follow_selection();
-  std::set<CameraName> in_sight;
-  for (const auto& [name, tiles] : in_sight_) in_sight.insert(name);
   plan_ = camera_plan({.world = &control_.world(),
                        .net = &control_.tabs()->net(),
                        .sharp = sharp_,
                        .off = off_,
-                       .in_sight = &in_sight,
+                       .in_sight = &in_sight_,
                        .turn = turn_});
   std::vector<QVariantList> rows;
   std::vector<QVariantList> large;
@@ -126,8 +124,10 @@ QSizeF CameraGrid::tileFor(int tiles, double width, double height, double mm) co
 
 void CameraGrid::see(const QString& robot, const QString& camera, bool in_sight) {
   const CameraName name{robot.toStdString(), camera.toStdString()};
-  const int tiles = in_sight_[name] += in_sight ? 1 : -1;
-  if (tiles <= 0) in_sight_.erase(name);
+  if (in_sight)
+    in_sight_.insert(name);
+  else if (const auto one = in_sight_.find(name); one != in_sight_.end())
+    in_sight_.erase(one);
   // Tiles appear while their list changes, and while it scrolls.
   if (!seen_.isActive()) seen_.start(kSeenMs);
 }

@@ -4,7 +4,6 @@
 #include <QObject>
 #include <QSize>
 #include <QTimer>
-#include <map>
 
 #include "basestation/gui/bridge/camera_plan.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
@@ -76,7 +75,7 @@ class CameraGrid : public QObject {
   std::string selected_{};  ///< The robot whose camera the selection made the sharp one.
   std::set<CameraName> off_{};
   std::set<CameraName> ending_{};         ///< Switched off by this grid; the station has not answered yet.
-  std::map<CameraName, int> in_sight_{};  ///< Thumbnails of each, over all that show the grid.
+  std::multiset<CameraName> in_sight_{};  ///< One for each of its thumbnails.
   std::size_t turn_{};
   QTimer turns_{}, seen_{};
   int watchers_{0};

@@ -87,7 +87,7 @@ void list_cameras(const CameraPlanScene& scene, CameraPlan& plan) {
 
 bool is_driven(const station::World& world, const std::string& name) {
   const station::Robot* robot = world.robot(name);
-  return robot && (robot->mode == "manual" || robot->mode == "smart_joystick");
+  return robot && station::is_by_hand(robot->mode);
 }
 
 /// How many thumbnails are asked for, and how often.

@@ -43,7 +43,7 @@ struct CameraPlanScene {
   CameraName sharp{};
   std::set<CameraName> off{};
   /// Those whose thumbnail is in sight; null: all. The others ask for nothing, and wait for no turn.
-  const std::set<CameraName>* in_sight{};
+  const std::multiset<CameraName>* in_sight{};
   std::size_t turn{};  ///< Rises with time: thumbnails for which there is no room take turns.
 };
 

@@ -170,16 +170,15 @@ void MapView::follow_changed() {
 void MapView::drive_changed(bool driving) {
   constexpr double kDrivenMm = 12.0;  // Length of the robot on the screen.
   if (!driving) {
-    if (!before_drive_) return;
-    const auto [fitting, camera] = *std::exchange(before_drive_, {});
-    if (!control_->follow()->followed_to_the_end()) return;
-    camera_.x = camera.x;
-    camera_.y = camera.y;
-    camera_.scale = camera.scale;
-    set_fitting(fitting);
+    if (const auto before = before_drive_.end(*control_->follow())) {
+      camera_.x = before->camera.x;
+      camera_.y = before->camera.y;
+      camera_.scale = before->camera.scale;
+      set_fitting(before->fitting);
+    }
     return;
   }
-  if (!before_drive_) before_drive_ = {fitting_, camera_};  // The stick may go from one robot to another.
+  before_drive_.begin(fitting_, camera_);
   if (const station::Robot* robot = control_->follow()->target())
     camera_.scale = std::max(camera_.scale, kDrivenMm * Theme::instance().mm() / extent_of(*robot));
 }

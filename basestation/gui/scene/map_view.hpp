@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "basestation/gui/bridge/control.hpp"
+#include "basestation/gui/scene/before_drive.hpp"
 #include "basestation/gui/scene/floor_choice.hpp"
 #include "basestation/gui/scene/gesture_area.hpp"
 #include "basestation/gui/scene/map_item_2d.hpp"
@@ -107,11 +108,7 @@ class MapView : public adit::gui::GestureArea {
   bool fitting_{true};
   double covered_{0.0}, covered_right_{0.0};
   QString followed_{};  ///< Robot for which the scale was set.
-  struct BeforeDrive {
-    bool fitting{};
-    Camera camera{};
-  };
-  std::optional<BeforeDrive> before_drive_{};  ///< The view before a robot was driven.
+  BeforeDrive<Camera> before_drive_{};
   SignalGrid grid_{};
   Floors floors_{};
   FloorChoice choice_{};

@@ -201,16 +201,15 @@ void MapView3D::follow_changed() {
 void MapView3D::drive_changed(bool driving) {
   constexpr double kNear = 12.0;  // m
   if (!driving) {
-    if (!before_drive_) return;
-    const auto [fitting, camera] = *std::exchange(before_drive_, {});
-    if (!control_->follow()->followed_to_the_end()) return;
-    camera_.target = camera.target;
-    camera_.yaw = camera.yaw;
-    camera_.distance = camera.distance;
-    set_fitting(fitting);
+    if (const auto before = before_drive_.end(*control_->follow())) {
+      camera_.target = before->camera.target;
+      camera_.yaw = before->camera.yaw;
+      camera_.distance = before->camera.distance;
+      set_fitting(before->fitting);
+    }
     return;
   }
-  if (!before_drive_) before_drive_ = {fitting_, camera_};  // The stick may go from one robot to another.
+  before_drive_.begin(fitting_, camera_);
   camera_.distance = std::min(camera_.distance, kNear);
 }
 

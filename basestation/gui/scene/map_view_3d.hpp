@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "basestation/gui/bridge/control.hpp"
+#include "basestation/gui/scene/before_drive.hpp"
 #include "basestation/gui/scene/floor_choice.hpp"
 #include "basestation/gui/scene/gesture_area.hpp"
 #include "basestation/gui/scene/mark_painter.hpp"
@@ -144,11 +145,7 @@ class MapView3D : public adit::gui::GestureArea {
   QString floor_said_{};
   std::optional<Floor> floor_{};  ///< As the slice shows it.
   double covered_{0.0}, covered_right_{0.0};
-  struct BeforeDrive {
-    bool fitting{};
-    OrbitCamera camera{};
-  };
-  std::optional<BeforeDrive> before_drive_{};  ///< The view before a robot was driven.
+  BeforeDrive<OrbitCamera> before_drive_{};
   std::vector<Point3> ghosts_{};
   QBasicTimer settled_{};  ///< Runs while the camera moves.
 };
