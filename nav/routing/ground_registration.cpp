@@ -33,6 +33,8 @@ Pose3 corrected(const Pose3& body, const Eigen::Vector2f& gradient, float height
 
 }  // namespace
 
+Pose3 GroundRegistration::correct(const Pose3& body) const { return corrected(body, gradient_, height_); }
+
 Pose3 GroundRegistration::apply(std::span<const Eigen::Vector3f> points, const Pose3& body,
                                 const SurfaceMap& map) {
   const Pose3 before = corrected(body, gradient_, height_);

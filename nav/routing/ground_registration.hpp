@@ -19,6 +19,8 @@ class GroundRegistration {
   /// Returns the pose `body` with height, roll and pitch corrected. `points`: base_link, m; `body`: map
   /// frame.
   Pose3 apply(std::span<const Eigen::Vector3f> points, const Pose3& body, const SurfaceMap& map);
+  /// The same correction of another pose of about that time.
+  Pose3 correct(const Pose3& body) const;
   /// Forgets the correction.
   void clear() {
     gradient_.setZero();

@@ -27,9 +27,16 @@ RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
       line_(map_, builder_),
       search_(map_, builder_, params) {}
 
-void RoutePlanner::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s, bool search) {
+void RoutePlanner::add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s, bool search,
+                            const LocalMap* near) {
   // On stairs one step would be registered to another, so there the odometry's heights are used.
-  profile_.add(scan, platform_.stairs ? body : registration_.apply(scan.all(), body, map_), map_);
+  const Pose3 corrected = platform_.stairs ? body : registration_.apply(scan.all(), body, map_);
+  near_.clear();
+  if (near) {
+    const Pose3& located = near->scan().located;
+    near_.take(*near, platform_.stairs ? located : registration_.correct(located));
+  }
+  profile_.add(scan, corrected, near_, map_);
   map_.expire(stamp_s);
   for (int i = 0; search && i < params_.rebuilds; ++i) {
     const int index = map_.next_dirty();

@@ -28,8 +28,10 @@ class RoutePlanner {
   /// Takes a scan; points are not finite where there was no return. `body`: base_link, which is
   /// on the ground, at the scan's time. `stamp_s`: that time, s, not decreasing. `search`: a search will
   /// follow soon, so up to RouteParams::rebuilds tiles of the graph are updated now; a search updates the
-  /// remaining tiles as it reaches them.
-  void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s, bool search = true);
+  /// remaining tiles as it reaches them. `near`: the local map of about that time; null: the scan has to show
+  /// what is near the robot, too, which it does worse.
+  void add_scan(const ScanPoints& scan, const Pose3& body, double stamp_s, bool search = true,
+                const LocalMap* near = nullptr);
   /// Adds known ground, or an obstacle that rises `obstacle_height` metres above the ground, m, from a map.
   /// An obstacle overrides all other evidence of its cell. Call finish() afterwards.
   void set_ground(const Eigen::Vector3d& place);
@@ -94,6 +96,7 @@ class RoutePlanner {
   Traversability limits_;
   double level_;  // m: heights at one place that differ by at most this belong to one ground.
   SurfaceMap map_;
+  NearGround near_{};
   ScanProfile profile_;
   GroundRegistration registration_{};
   TileBuilder builder_;

@@ -134,17 +134,17 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
                       rise > step_ && rise < kNextReturn;
     if (!foot && rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
     if (ended) {
-      if (rise > step_ && is_face(returns, which)) map.see_obstacle(r.x, r.y, z, rise);
+      if (rise > step_ && is_face(returns, which)) see_obstacle(r.x, r.y, z, rise, map);
       continue;
     }
     if (foot || rise > step_ + slope_ * run) {
       float base = z;
       if (foot) {
         base = z_before;
-        map.see_obstacle(last_ground->x, last_ground->y, base, z - base);
+        see_obstacle(last_ground->x, last_ground->y, base, z - base, map);
         if (pieces_.size() > first) pieces_.back().z_to = base;
       }
-      map.see_obstacle(r.x, r.y, base, r.z - base);
+      see_obstacle(r.x, r.y, base, r.z - base, map);
       pieces_.push_back({at, r.range - kRouteCellF, begins ? from_.ground : base, base, r.z});
       hit = {r.range, r.x, r.y, base, r.z - base};
       z = base;
@@ -156,8 +156,8 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
       const float share = (from_.sensor.z() - z) / (from_.sensor.z() - r.z);
       const float there = share * r.range;
       if (there > std::max(at, kFirst)) {
-        map.see_obstacle(from_.sensor.x() + share * (r.x - from_.sensor.x()),
-                         from_.sensor.y() + share * (r.y - from_.sensor.y()), z, 0.02f);
+        see_obstacle(from_.sensor.x() + share * (r.x - from_.sensor.x()),
+                     from_.sensor.y() + share * (r.y - from_.sensor.y()), z, 0.02f, map);
       }
       return;
     } else {
@@ -187,10 +187,15 @@ void ScanProfile::close_gaps(SurfaceMap& map) const {
     const int parts = static_cast<int>(std::ceil(gap / kRouteCellF));
     for (int i = 1; i < parts; ++i) {
       const float t = static_cast<float>(i) / static_cast<float>(parts);
-      map.see_obstacle(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.base,
-                       std::min(a.obstacle_height, b.obstacle_height));
+      see_obstacle(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.base,
+                   std::min(a.obstacle_height, b.obstacle_height), map);
     }
   }
+}
+
+void ScanProfile::see_obstacle(float x, float y, float z, float height, SurfaceMap& map) const {
+  const NearGround::Cell* cell = near_->find(route_cell(double{x}), route_cell(double{y}));
+  if (!cell || cell->what == NearGround::Cell::What::unknown) map.see_obstacle(x, y, z, height);
 }
 
 // Assigns each cell within range to the one direction that contains its centre.
@@ -226,9 +231,14 @@ void ScanProfile::write_free(int direction, std::span<const Piece> pieces, Surfa
       if (turns & 1) dx = -std::exchange(dy, dx);
       if (turns & 2) dx = -dx, dy = -dy;
       const float r = quarter_[i].range;
-      const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
+      float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
+      bool there = p.to - r < kRouteCellF;  // At a return, or at the foot of an obstacle.
+      if (const NearGround::Cell* cell = near_->find(cx + dx, cy + dy)) {
+        if (cell->what > NearGround::Cell::What::ground) continue;
+        if (!std::isnan(cell->low)) z = cell->low;
+        there = false;
+      }
       const float ray = from_.sensor.z() + (p.ray_z - from_.sensor.z()) * r / std::max(p.to, r);
-      const bool there = p.to - r < kRouteCellF;  // At a return, or at the foot of an obstacle.
       map.see_free(cx + dx, cy + dy, z, std::max(0.0f, ray - z),
                    there ? SurfaceMap::Seen::measured : SurfaceMap::Seen::between);
     }
@@ -269,12 +279,14 @@ void ScanProfile::walk_all(std::span<const Eigen::Vector3f> points, const Pose3&
   close_gaps(map);
 }
 
-void ScanProfile::add(const ScanPoints& scan, const Pose3& body, SurfaceMap& map) {
+void ScanProfile::add(const ScanPoints& scan, const Pose3& body, const NearGround& near, SurfaceMap& map) {
+  near_ = &near;
   const Eigen::Vector3d usual = platform_.lidar_origin();
   from_ = viewpoint(scan.origin(usual), body);
   const Eigen::Vector3f up = (body.orientation * Eigen::Vector3d::UnitZ()).cast<float>();
   gradient_ = up.z() > 0.5f ? Eigen::Vector2f(-up.x() / up.z(), -up.y() / up.z()) : Eigen::Vector2f(0, 0);
   map.begin_scan(body.position.x(), body.position.y());
+  near.write(map);
   stand(body, map);
   // All obstacles first, so that a neighbouring ray does not free an occupied cell.
   pieces_.clear();

@@ -8,6 +8,7 @@
 #include "core/config/traversability.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/geometry/scan_points.hpp"
+#include "nav/routing/near_ground.hpp"
 #include "nav/routing/surface_map.hpp"
 
 namespace adit::nav {
@@ -17,7 +18,7 @@ namespace adit::nav {
 /// clearance height are ignored, and a ray that passed below the expected ground marks a hole. The sectors
 /// follow M. Himmelsbach et al., *Fast segmentation of 3D point clouds for ground vehicles*, 2010. A lidar
 /// with one level ring sees no ground; then the ground before an obstacle is taken to be as high as under the
-/// robot.
+/// robot. Near the robot the local map decides what blocks and how high the ground is, and rays only free.
 class ScanProfile {
  public:
   ScanProfile(const Platform& platform, const RouteParams& params);
@@ -26,8 +27,8 @@ class ScanProfile {
   static float most_wrong(const Platform& platform);
 
   /// Adds a scan to the map; points are not finite or on the robot itself where there was no return.
-  /// `body`: map frame.
-  void add(const ScanPoints& scan, const Pose3& body, SurfaceMap& map);
+  /// `body`: map frame. `near`: empty where there is no local map.
+  void add(const ScanPoints& scan, const Pose3& body, const NearGround& near, SurfaceMap& map);
 
  private:
   static constexpr int kDirections = 360;
@@ -71,6 +72,8 @@ class ScanProfile {
   bool is_obstacle(std::span<const Return> returns, std::size_t which) const;
   bool is_face(std::span<const Return> returns, std::size_t which) const;
   void list_sectors();
+  /// Writes a return at (x, y), `height` above the ground at z, unless the local map knows better.
+  void see_obstacle(float x, float y, float z, float height, SurfaceMap& map) const;
   void write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const;
   void close_gaps(SurfaceMap& map) const;
   void stand(const Pose3& body, SurfaceMap& map) const;
@@ -80,6 +83,7 @@ class ScanProfile {
   Platform platform_;
   RouteParams params_;
   float clear_, step_, drop_, slope_;
+  const NearGround* near_{};        ///< Of the scan that is added.
   Viewpoint from_{};                ///< Of the lidar whose returns are read.
   Eigen::Vector2f gradient_{0, 0};  ///< Of the ground under the body.
   std::vector<Part> parts_{};
