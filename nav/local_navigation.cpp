@@ -22,7 +22,7 @@ LocalNavigation::LocalNavigation(const Platform& platform, PlannerFactory planne
       way_back_(platform) {
   if (platform.flies()) air_.emplace(platform);
   constexpr std::size_t kMaxPredicted = 8192;  // Maximum number of predicted places of movers.
-  obstacles_.reserve(std::max<std::size_t>(terrain_.max_cells(), AirMap::kMax) + kMaxPredicted);
+  obstacles_.reserve(std::max<std::size_t>(terrain_.max_places(), AirMap::kMax) + kMaxPredicted);
   moving_.reserve(Tracker::kMax * Mover::kMax);
 }
 

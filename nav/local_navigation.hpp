@@ -43,7 +43,6 @@ class LocalNavigation {
   Plan plan(const Target& target, const Pose2& pose, double stamp_s,
             std::span<const Eigen::Vector2f> border = {}, std::span<const Eigen::Vector3f> peers = {});
 
-  const TerrainMap& terrain() const { return terrain_; }
   /// What the scans so far show around the robot; null before the first one.
   const std::shared_ptr<const LocalMap>& map() const { return map_; }
   std::span<const Mover> movers() const { return tracker_.movers(); }

@@ -13,8 +13,6 @@ using nav::CellClass;
 using nav::LocalCell;
 using nav::LocalMap;
 
-constexpr std::array<const char*, nav::kCellClasses> kClasses{"unknown",  "ground", "slope", "step",
-                                                              "obstacle", "drop",   "mover"};
 constexpr float kReach = kRings.back();
 constexpr double kNearReach = 2.0;       // m
 constexpr float kHeightsApart = 0.05f;   // m
@@ -78,8 +76,6 @@ bool is_blocked(const nav::GroundCell* cell) { return cell && cell->blocked; }
 
 void Counts::operator+=(const Counts& other) {
   scans += other.scans;
-  cells += other.cells;
-  other_class += other.other_class;
   const auto add = [](auto& to, const auto& from) {
     for (std::size_t n = 0; n < to.size(); ++n) to[n] += from[n];
   };
@@ -106,22 +102,7 @@ Comparison::Comparison(const Platform& platform)
 void Comparison::look(const agent::PlanJob& job, const nav::LocalNavigation& local) {
   map_ = local.map();
   ++counts_.scans;
-  compare_terrain(local.terrain());
   compare_near(job);
-}
-
-void Comparison::compare_terrain(const nav::TerrainMap& terrain) {
-  using Kind = nav::TerrainMap::Kind;
-  constexpr std::array kSame{Kind::unknown,  Kind::ground, Kind::slope,   Kind::step,
-                             Kind::obstacle, Kind::drop,   Kind::obstacle};
-  terrain.classify_cells(kinds_);
-  for (std::size_t k = 0; k < kinds_.size(); ++k) {
-    const Eigen::Vector2f at = terrain.ground().middle(static_cast<int>(k));
-    const float quarter = LocalMap::kCell / 2;
-    const Quarters mine = quarters(*map_, LocalMap::cell(at.x() - quarter), LocalMap::cell(at.y() - quarter));
-    ++counts_.cells;
-    counts_.other_class += kSame[static_cast<std::size_t>(mine.kind)] != kinds_[k];
-  }
 }
 
 void Comparison::compare_near(const agent::PlanJob& job) {
@@ -208,13 +189,12 @@ std::string tables_of(const std::string& name, const Counts& c) {
     return 100.0 * static_cast<double>(part) / static_cast<double>(std::max<std::uint64_t>(1, all));
   };
   std::string out = fmt::format(
-      "\n## {}\n\n{} scans, {} cells; of another class than in the terrain map: {}.\n"
+      "\n## {}\n\n{} scans.\n"
       "Ground that both measured: {}, of it more than {:.0f} cm apart: {:.1f} %.\n"
       "Places of the monitor within 2 m: {}, without an impassable cell beside them: {:.1f} %. Obstacles "
       "within 2 m: {}, without a place of the monitor beside them: {:.1f} %.\n",
-      name, c.scans, c.cells, c.other_class, c.heights, 100.0 * double{kHeightsApart},
-      percent(c.heights_off, c.heights), c.near, percent(c.only_near, c.near), c.near_local,
-      percent(c.not_near, c.near_local));
+      name, c.scans, c.heights, 100.0 * double{kHeightsApart}, percent(c.heights_off, c.heights), c.near,
+      percent(c.only_near, c.near), c.near_local, percent(c.not_near, c.near_local));
   out +=
       "\n| m | local | of these only local | routes | of these only routes |\n| --- | --- | --- | --- | --- "
       "|\n";
@@ -231,7 +211,7 @@ std::string tables_of(const std::string& name, const Counts& c) {
   for (const char* name_of : kRouteClasses) out += fmt::format(" {} |", name_of);
   out += "\n| --- | --- | --- | --- | --- | --- |\n";
   for (std::size_t kind = 0; kind < nav::kCellClasses; ++kind) {
-    out += fmt::format("| {} |", kClasses[kind]);
+    out += fmt::format("| {} |", nav::kCellClassNames[kind]);
     for (std::size_t theirs = 0; theirs < kRouteClasses.size(); ++theirs) {
       std::uint64_t sum = 0;
       for (const auto& ring : c.route) sum += ring[kind][theirs];

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "nav/local_map/local_map_builder.hpp"
 #include "nav/local_navigation.hpp"
 #include "nav/monitor/obstacle_detector.hpp"
 #include "nav/routing/route_planner.hpp"
@@ -28,8 +27,7 @@ inline constexpr std::array<const char*, 4> kOnlyRoute{"remembered", "seen to be
 
 /// Counts of cells of 0.1 m, summed over scans.
 struct Counts {
-  std::uint64_t scans{}, cells{};
-  std::uint64_t other_class{};  ///< Cells of which the terrain map gives another class.
+  std::uint64_t scans{};
   /// By ring, class of the local map and class of the map of the routes.
   std::array<std::array<std::array<std::uint64_t, kRouteClasses.size()>, nav::kCellClasses>, kRings.size()>
       route{};
@@ -50,20 +48,18 @@ class Comparison {
  public:
   explicit Comparison(const Platform& platform);
 
-  /// After a scan entered the terrain map.
+  /// After a scan entered the local map.
   void look(const agent::PlanJob& job, const nav::LocalNavigation& local);
   /// After a scan entered the map of the routes.
   void look(const agent::RouteJob& job, const nav::RoutePlanner& planner);
   const Counts& counts() const { return counts_; }
 
  private:
-  void compare_terrain(const nav::TerrainMap& terrain);
   void compare_near(const agent::PlanJob& job);
 
   nav::ObstacleDetector detector_;
   float step_;  ///< m
   std::shared_ptr<const nav::LocalMap> map_{};
-  std::vector<nav::TerrainMap::Kind> kinds_{};
   std::uint64_t route_scans_{};
   Counts counts_{};
 };

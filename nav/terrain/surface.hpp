@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "nav/terrain/cell_class.hpp"
 #include "nav/terrain/ground_grid.hpp"
-#include "nav/terrain/terrain_cell.hpp"
 
 namespace adit::nav {
 
@@ -34,8 +34,8 @@ class Surface {
   /// A place with a cost: every second cell of the ground, and each cell crossed by a step that is too high.
   struct Place {
     std::uint32_t index;  ///< In the ground's window.
-    Layer layer;
-    float cost;  ///< (0, 1]
+    CellClass kind;       ///< `slope` or `step`.
+    float cost;           ///< (0, 1]
   };
   std::span<const Place> places() const { return {places_.data(), places_.size()}; }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
 #include "nav/geometry/stairs_geometry.hpp"
 
@@ -77,12 +76,10 @@ TerrainMap::TerrainMap(const Platform& platform, double range)
               static_cast<float>(platform.length / 2), static_cast<float>(ring_angle(platform))},
              ground_),
       surface_(surface_params(platform), ground_.side()),
-      solid_(ground_.cells(), 0),
-      drop_(ground_.cells(), 0) {
+      solid_(ground_.cells(), 0) {
   near_.reserve(kUsualReturns);
   under_.reserve(platform.stairs ? kMaxUnder : 0);
   deep_.reserve(kMaxDeep);
-  cells_.reserve(max_cells());
 }
 
 void TerrainMap::clear() {
@@ -90,7 +87,6 @@ void TerrainMap::clear() {
   obstacles_.clear();
   drops_.clear();
   stairs_.clear();
-  cells_.clear();
   height_correction_ = 0;
   tilt_error_.setZero();
   begun_ = false;
@@ -127,7 +123,6 @@ void TerrainMap::add_scan(const ScanPoints& scan, const Pose3& body, double stam
   mark_obstacles(view);
   find_drops(view, std::sqrt(std::max(0.0f, depth * depth - noise * noise)) / known);
   surface_.work_out(ground_, solid_);
-  write_cells();
 }
 
 void TerrainMap::register_scan(const Pose3& body, View& view, GroundGrid::Offset& offset) {
@@ -263,63 +258,6 @@ bool TerrainMap::is_on_stairs(const Eigen::Vector2f& at) const {
     return place.along >= -kStairsApproach && place.along <= length_of(stairs) + kEdge &&
            std::abs(place.across) <= stairs.width / 2;
   });
-}
-
-// Includes the last cell of the ground before each drop, because a drop may begin anywhere in it.
-void TerrainMap::write_drops() {
-  const int side = ground_.side();
-  std::fill(drop_.begin(), drop_.end(), std::uint8_t{0});
-  const auto write = [this](int index) {
-    const Eigen::Vector2f at = ground_.middle(index);
-    if (is_on_stairs(at) || std::exchange(drop_[index], std::uint8_t{1})) return;
-    cells_.push_back({at.x(), at.y(), 1.0f, 0.0f, Layer::drop});
-  };
-  for (const Drops::Cell& cell : drops_.cells()) {
-    const int index = static_cast<int>(cell.index);
-    if (cell.probability < Drops::kBlocks) {
-      const Eigen::Vector2f at = ground_.middle(index);
-      if (!is_on_stairs(at)) cells_.push_back({at.x(), at.y(), cell.probability, 0.0f, Layer::drop});
-      continue;
-    }
-    if (is_on_stairs(ground_.middle(index))) continue;
-    write(index);
-    const int i = index / side, j = index % side;
-    if (i == 0 || j == 0 || i == side - 1 || j == side - 1) continue;
-    for (const int beside : {index - side, index - 1, index + 1, index + side})
-      if (ground_.measured(beside)) write(beside);
-  }
-}
-
-void TerrainMap::classify_cells(std::vector<Kind>& kinds) const {
-  const auto side = static_cast<std::size_t>(ground_.side());
-  kinds.assign(ground_.cells(), Kind::unknown);
-  for (std::size_t k = 0; k < kinds.size(); ++k)
-    if (ground_.measured(static_cast<int>(k))) kinds[k] = Kind::ground;
-  for (const Surface::Place& place : surface_.places()) {
-    // A step that is too high has a place for each of its cells; other layers have one for every second cell.
-    const bool edge = place.layer == Layer::step && place.cost >= 1;
-    const Kind kind = place.layer == Layer::slope ? Kind::slope : Kind::step;
-    const std::size_t first = place.index;
-    for (const std::size_t k : {first, first + 1, first + side, first + side + 1}) {
-      if (k < kinds.size() && (kinds[k] == Kind::ground || edge)) kinds[k] = kind;
-      if (edge) break;
-    }
-  }
-  for (std::size_t k = 0; k < kinds.size(); ++k) {
-    if (solid_[k]) kinds[k] = Kind::obstacle;
-    if (drop_[k]) kinds[k] = Kind::drop;
-  }
-}
-
-void TerrainMap::write_cells() {
-  cells_.clear();
-  for (const auto& e : obstacles_.entries())
-    if (e.again) cells_.push_back({e.mean_x, e.mean_y, 1.0f, now_ - e.since});
-  write_drops();
-  for (const Surface::Place& place : surface_.places()) {
-    const Eigen::Vector2f at = ground_.middle(place.index);
-    cells_.push_back({at.x(), at.y(), place.cost, 0.0f, place.layer});
-  }
 }
 
 }  // namespace adit::nav

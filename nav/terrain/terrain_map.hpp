@@ -10,7 +10,6 @@
 #include "nav/terrain/drops.hpp"
 #include "nav/terrain/obstacle_cells.hpp"
 #include "nav/terrain/surface.hpp"
-#include "nav/terrain/terrain_cell.hpp"
 
 namespace adit::nav {
 
@@ -21,9 +20,6 @@ namespace adit::nav {
 /// scan of its lidar's size.
 class TerrainMap {
  public:
-  /// Class of a ground cell for the platform.
-  enum class Kind : std::uint8_t { unknown, ground, step, slope, obstacle, drop };
-
   static constexpr double kMinRange = 0.05;  ///< Shorter ranges are no returns, m.
 
   /// `range`: radius of the map around the robot, m, [1, 20].
@@ -38,14 +34,16 @@ class TerrainMap {
   /// from a floor above, its own edge hides steps that are steeper than the ray over it.
   void set_stairs(std::span<const Staircase> stairs);
 
-  /// All places with a cost; valid until the next scan. Layers that share a place have one cell each.
-  std::span<const TerrainCell> cells() const { return cells_; }
-  /// Maximum number of cells().
-  std::size_t max_cells() const { return obstacles_.max_cells() + ground_.cells() * 9 / 4; }
   const GroundGrid& ground() const { return ground_; }
   const ObstacleCells& obstacles() const { return obstacles_; }
-  /// Classifies each cell of the ground's window, by index. Classes that block win over those with a cost.
-  void classify_cells(std::vector<Kind>& kinds) const;
+  const Drops& drops() const { return drops_; }
+  const Surface& surface() const { return surface_; }
+  /// Whether a place belongs to a staircase that leads from the robot's height, or to the floor at its ends.
+  bool is_on_stairs(const Eigen::Vector2f& at) const;
+  /// Time since an obstacle was first seen, s.
+  float age(const ObstacleCells::Entry& entry) const { return now_ - entry.since; }
+  /// Maximum number of places with a cost.
+  std::size_t max_places() const { return obstacles_.max_cells() + ground_.cells() * 9 / 4; }
   /// Height of the map's datum above that of the odometry frame, m: see GroundGrid.
   double height_correction() const { return static_cast<double>(height_correction_); }
   /// Error of the body's attitude: additional rise of the map's ground per metre along x and y: see
@@ -64,10 +62,6 @@ class TerrainMap {
   /// Whether a return is so far below the ground that the ground is missing there.
   bool is_below(const Eigen::Vector3f& p) const;
   void find_drops(const View& view, float farthest);
-  /// Whether a place belongs to a staircase that leads from the robot's height, or to the floor at its ends.
-  bool is_on_stairs(const Eigen::Vector2f& at) const;
-  void write_drops();
-  void write_cells();
 
   Platform platform_;
   double range_;  ///< m
@@ -85,9 +79,7 @@ class TerrainMap {
   std::vector<Eigen::Vector2f> under_{};  ///< Those of them nearly as high as an obstacle.
   std::vector<Eigen::Vector3f> deep_{};   ///< Returns whose ray went below the ground within range.
   std::vector<std::uint8_t> solid_;       ///< Marks the cells of the ground's window with an obstacle.
-  std::vector<std::uint8_t> drop_;        ///< Marks those that are written as a blocking drop.
   std::vector<Staircase> stairs_{};       ///< Those that the platform climbs.
-  std::vector<TerrainCell> cells_{};
   Pose3 last_body_{};
   double epoch_{0};
   float now_{0};

@@ -60,33 +60,33 @@ void print(const PlanOptions& options, std::size_t cycle, double terrain_ms, dou
   std::printf("%s\n", line.dump().c_str());
 }
 
-/// The layers of the terrain, paler where they cost less.
-void draw_terrain(Canvas& canvas, std::span<const nav::TerrainCell> cells, const Eigen::Vector2d& at) {
+/// The places of the local map, paler where they cost less.
+void draw_places(Canvas& canvas, std::span<const nav::LocalPlace> places, const Eigen::Vector2d& at) {
   struct Look {
-    const char* name;
+    nav::CellClass kind;
     Colour colour;
     double pixels;
   };
-  static const std::array<Look, 5> looks{{{"obstacle", {0.75, 0.10, 0.12}, 2.5},
-                                          {"drop", {0.45, 0.15, 0.60}, 5.0},
-                                          {"slope", {0.93, 0.55, 0.10}, 8.0},
-                                          {"step", {0.80, 0.70, 0.10}, 8.0},
-                                          {"roughness", {0.30, 0.60, 0.25}, 8.0}}};
-  // Obstacles last: they are the smallest.
-  for (std::size_t layer = looks.size(); layer-- > 0;)
-    for (const nav::TerrainCell& cell : cells) {
-      const Eigen::Vector2d q(cell.x, cell.y);
-      if (static_cast<std::size_t>(cell.layer) != layer || (q - at).cwiseAbs().maxCoeff() >= 5.0) continue;
-      const Look& look = looks[layer];
-      const double share = 0.25 + 0.75 * static_cast<double>(cell.cost);
+  // Movers and obstacles last: they are the smallest.
+  static const std::array<Look, 5> looks{{{nav::CellClass::step, {0.80, 0.70, 0.10}, 8.0},
+                                          {nav::CellClass::slope, {0.93, 0.55, 0.10}, 8.0},
+                                          {nav::CellClass::drop, {0.45, 0.15, 0.60}, 5.0},
+                                          {nav::CellClass::obstacle, {0.75, 0.10, 0.12}, 2.5},
+                                          {nav::CellClass::mover, {0.10, 0.35, 0.75}, 2.5}}};
+  for (const Look& look : looks) {
+    for (const nav::LocalPlace& place : places) {
+      const Eigen::Vector2d q(place.x, place.y);
+      if (place.kind != look.kind || (q - at).cwiseAbs().maxCoeff() >= 5.0) continue;
+      const double share = 0.25 + 0.75 * static_cast<double>(place.cost);
       const auto pale = [share](double c) { return 0.98 + share * (c - 0.98); };
       canvas.dot(q, look.pixels, {pale(look.colour.r), pale(look.colour.g), pale(look.colour.b)});
     }
-  for (const Look& look : looks) canvas.legend(look.name, look.colour);
+    canvas.legend(nav::kCellClassNames[static_cast<std::size_t>(look.kind)], look.colour);
+  }
 }
 
 Result<void> draw(const PlanOptions& options, const Platform& platform, const nav::Plan& plan,
-                  std::span<const nav::TerrainCell> terrain, const CloudFile& cloud, const Pose3& to_map,
+                  std::span<const nav::LocalPlace> places, const CloudFile& cloud, const Pose3& to_map,
                   const Pose3& body) {
   const Eigen::Vector2d at = body.position.head<2>();
   Canvas canvas(at - Eigen::Vector2d(6, 5), at + Eigen::Vector2d(6, 5), "Local plan: " + options.clouds);
@@ -96,7 +96,7 @@ Result<void> draw(const PlanOptions& options, const Platform& platform, const na
     const Eigen::Vector2d q = (to_map * p.cast<double>()).head<2>();
     if ((q - at).cwiseAbs().maxCoeff() < 5.0) canvas.dot(q, 1.0, points);
   }
-  draw_terrain(canvas, terrain, at);
+  draw_places(canvas, places, at);
   std::vector<Eigen::Vector2d> line;
   for (const Pose2& p : plan.path()) line.push_back(p.position());
   canvas.line(line, 4, path);
@@ -135,7 +135,7 @@ int plan(const PlanOptions& options) {
     const nav::Plan plan = local_navigation.plan(nav::Target::to(options.goal), body.planar(), stamp);
     print(options, cycle, t1 - t0, cpu_ms() - t1, plan);
     if (!options.picture.empty() && cycle + 1 == files->size())
-      if (const auto drawn = draw(options, *platform, plan, local_navigation.terrain().cells(), *cloud,
+      if (const auto drawn = draw(options, *platform, plan, local_navigation.map()->places(), *cloud,
                                   registered ? Pose3{} : cloud->viewpoint, body);
           !drawn)
         return report_error("navtool", drawn.error());

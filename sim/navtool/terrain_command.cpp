@@ -17,15 +17,17 @@
 namespace adit::sim::navtool {
 namespace {
 
+constexpr std::array kOrder{nav::CellClass::ground,   nav::CellClass::step, nav::CellClass::slope,
+                            nav::CellClass::obstacle, nav::CellClass::drop, nav::CellClass::unknown};
+
 void print(const TerrainOptions& options, const TerrainSurvey& survey, std::size_t clouds, double ms) {
   const TerrainCounts counts = survey.counts();
-  constexpr std::array kOrder{TerrainClass::ground,   TerrainClass::step, TerrainClass::slope,
-                              TerrainClass::obstacle, TerrainClass::drop, TerrainClass::unknown};
   nlohmann::ordered_json cells, m2;
-  for (const TerrainClass kind : kOrder) {
+  for (const nav::CellClass kind : kOrder) {
     const auto n = static_cast<std::size_t>(kind);
-    cells[kTerrainClassNames[n]] = counts[n];
-    m2[kTerrainClassNames[n]] = static_cast<double>(counts[n]) * TerrainSurvey::kCell * TerrainSurvey::kCell;
+    cells[nav::kCellClassNames[n]] = counts[n];
+    m2[nav::kCellClassNames[n]] =
+        static_cast<double>(counts[n]) * TerrainSurvey::kCell * TerrainSurvey::kCell;
   }
   const double each = ms / static_cast<double>(clouds);
   if (options.json) {
@@ -40,8 +42,8 @@ void print(const TerrainOptions& options, const TerrainSurvey& survey, std::size
     return;
   }
   std::printf("%zu clouds within %.1f m, %.2f ms each:", clouds, options.range, each);
-  for (const TerrainClass kind : kOrder) {
-    const char* name = kTerrainClassNames[static_cast<std::size_t>(kind)];
+  for (const nav::CellClass kind : kOrder) {
+    const char* name = nav::kCellClassNames[static_cast<std::size_t>(kind)];
     std::printf(" %s %.1f m2,", name, m2[name].get<double>());
   }
   std::printf(" drops %.2g of ground\n", TerrainSurvey::drop_share(counts));
@@ -53,19 +55,23 @@ Result<void> draw(const TerrainOptions& options, const TerrainSurvey& survey, co
   for (const Pose2& pose : trail) box.extend(pose.position());
   const Eigen::Vector2d margin = Eigen::Vector2d::Constant(options.range + 0.5);
   Canvas canvas(box.min() - margin, box.max() + margin, "Terrain: " + options.cloud);
-  static constexpr std::array<Colour, kTerrainClassNames.size()> colours{{{0.90, 0.90, 0.89},
-                                                                          {0.62, 0.80, 0.60},
-                                                                          {0.80, 0.70, 0.10},
-                                                                          {0.93, 0.55, 0.10},
-                                                                          {0.75, 0.10, 0.12},
-                                                                          {0.45, 0.15, 0.60}}};
+  // By class; a survey knows no movers.
+  static constexpr std::array<Colour, nav::kCellClasses> colours{{{0.90, 0.90, 0.89},
+                                                                  {0.62, 0.80, 0.60},
+                                                                  {0.93, 0.55, 0.10},
+                                                                  {0.80, 0.70, 0.10},
+                                                                  {0.75, 0.10, 0.12},
+                                                                  {0.45, 0.15, 0.60}}};
   const double pixels =
       std::clamp(1160.0 / (2 * margin.x() + box.sizes().x()) * TerrainSurvey::kCell, 1.0, 12.0);
-  survey.for_each([&](const Eigen::Vector2d& at, TerrainClass kind) {
+  survey.for_each([&](const Eigen::Vector2d& at, nav::CellClass kind) {
     canvas.dot(at, 0.5 * pixels, colours[static_cast<std::size_t>(kind)]);
   });
   canvas.body(platform, trail.back(), {0.13, 0.15, 0.19});
-  for (std::size_t n = 0; n < colours.size(); ++n) canvas.legend(kTerrainClassNames[n], colours[n]);
+  for (const nav::CellClass kind : kOrder) {
+    const auto n = static_cast<std::size_t>(kind);
+    canvas.legend(nav::kCellClassNames[n], colours[n]);
+  }
   return canvas.save(options.picture);
 }
 

@@ -25,10 +25,16 @@ void TerrainSurvey::add_scan(std::span<const Eigen::Vector3f> points, const Pose
     if (const auto found = cells_.find({cell(place.x()), cell(place.y())}); found != cells_.end())
       found->second.covered = true;
   }
-  map_.classify_cells(window_);
+  builder_.make(map_, {.stamp_s = stamp_s, .body = body, .located = body});
+  const auto ground = builder_.ground_classes();
+  window_.assign(ground.begin(), ground.end());
+  for (const auto& entry : map_.obstacles().entries())
+    if (nav::CellClass& kind = window_[map_.ground().window(entry.x(), entry.y())];
+        entry.again && kind != nav::CellClass::drop)
+      kind = nav::CellClass::obstacle;
   for (std::size_t index = 0; index < window_.size(); ++index) {
     ++scan_counts_[static_cast<std::size_t>(window_[index])];
-    if (window_[index] == TerrainClass::unknown) continue;
+    if (window_[index] == nav::CellClass::unknown) continue;
     const Eigen::Vector2f middle = map_.ground().middle(static_cast<int>(index));
     const auto found = cells_.find({cell(middle.x()), cell(middle.y())});
     if (found != cells_.end() && (middle.cast<double>() - at).norm() <= range_)
@@ -44,7 +50,7 @@ TerrainCounts TerrainSurvey::counts() const {
 
 std::size_t TerrainSurvey::hidden() const {
   return static_cast<std::size_t>(std::count_if(cells_.begin(), cells_.end(), [](const auto& entry) {
-    return entry.second.kind == TerrainClass::unknown && !entry.second.covered;
+    return entry.second.kind == nav::CellClass::unknown && !entry.second.covered;
   }));
 }
 
@@ -54,11 +60,12 @@ double TerrainSurvey::unknown_share() const {
 }
 
 double TerrainSurvey::drop_share(const TerrainCounts& counts) {
-  const auto at = [&](TerrainClass kind) {
+  const auto at = [&](nav::CellClass kind) {
     return static_cast<double>(counts[static_cast<std::size_t>(kind)]);
   };
-  const double drops = at(TerrainClass::drop);
-  const double all = at(TerrainClass::ground) + at(TerrainClass::step) + at(TerrainClass::slope) + drops;
+  const double drops = at(nav::CellClass::drop);
+  const double all =
+      at(nav::CellClass::ground) + at(nav::CellClass::step) + at(nav::CellClass::slope) + drops;
   return all > 0 ? drops / all : 0.0;
 }
 

@@ -5,17 +5,15 @@
 #include <unordered_map>
 #include <vector>
 
-#include "nav/terrain/terrain_map.hpp"
+#include "nav/local_map/local_map_builder.hpp"
 
 namespace adit::sim {
 
-/// What a terrain map says of a cell of 0.1 m.
-using TerrainClass = nav::TerrainMap::Kind;
-inline constexpr std::array<const char*, 6> kTerrainClassNames{"unknown", "ground",   "step",
-                                                               "slope",   "obstacle", "drop"};
-using TerrainCounts = std::array<std::size_t, kTerrainClassNames.size()>;
+/// Cells by class.
+using TerrainCounts = std::array<std::size_t, nav::kCellClasses>;
 
-/// The last word of a terrain map on each cell that came within range of a robot on its way.
+/// The last class of each cell that came within range of a robot on its way. Classes are those of the robot's
+/// local map, which a survey computes farther away than a robot does.
 class TerrainSurvey {
  public:
   static constexpr double kCell = 0.1;                 ///< As nav::GroundGrid's, m.
@@ -46,7 +44,6 @@ class TerrainSurvey {
                           (static_cast<double>(key.second) + 0.5) * kCell),
           cell.kind);
   }
-  const nav::TerrainMap& map() const { return map_; }
 
  private:
   using Key = std::pair<std::int32_t, std::int32_t>;
@@ -58,13 +55,14 @@ class TerrainSurvey {
     }
   };
   struct Cell {
-    TerrainClass kind{TerrainClass::unknown};
+    nav::CellClass kind{};
     bool covered{false};  ///< A scan had a return over it.
   };
   nav::TerrainMap map_;
+  nav::LocalMapBuilder builder_{};
   double range_;
   TerrainCounts scan_counts_{};
-  std::vector<TerrainClass> window_{};  ///< Of the terrain map's window.
+  std::vector<nav::CellClass> window_{};  ///< Of the terrain map's window.
   std::unordered_map<Key, Cell, Hash> cells_{};
 };
 

@@ -137,7 +137,7 @@ TEST(Surface, FindsTheCellWhereAStepBecomesTooHigh) {
   const auto blocked = [&](float x, float y) {
     const auto places = surface.places();
     return std::count_if(places.begin(), places.end(), [&](const Surface::Place& place) {
-      return static_cast<int>(place.index) == grid.window(x, y) && place.layer == Layer::step &&
+      return static_cast<int>(place.index) == grid.window(x, y) && place.kind == CellClass::step &&
              place.cost >= 1;
     });
   };

@@ -6,8 +6,8 @@
 
 #include "nav/routing/route_follower.hpp"
 #include "nav/routing/route_planner.hpp"
-#include "nav/terrain/terrain_map.hpp"
 #include "tests/nav/box_world.hpp"
+#include "tests/nav/places.hpp"
 #include "tests/nav/route_world.hpp"
 
 namespace adit::nav::test {
@@ -321,7 +321,7 @@ struct FlightDown {
       body.position = {-1.2, 0, kLanding};
       map.add_scan(points, body, 0.1 * i);
     }
-    return static_cast<int>(std::ranges::count_if(map.cells(), [](const TerrainCell& cell) {
+    return static_cast<int>(std::ranges::count_if(places(map), [](const LocalPlace& cell) {
       return cell.cost >= 1.0f && cell.x > -0.15f && cell.x < 1.0f && std::abs(cell.y) < 0.4f;
     }));
   }

@@ -4,8 +4,8 @@
 
 #include "nav/monitor/obstacle_detector.hpp"
 #include "nav/routing/route_planner.hpp"
-#include "nav/terrain/terrain_map.hpp"
 #include "tests/nav/box_world.hpp"
+#include "tests/nav/places.hpp"
 
 namespace adit::nav::test {
 namespace {
@@ -38,7 +38,7 @@ TEST(LidarMounting, TheTerrainKeepsWhatIsBelowTheRaysOfALidarAtTheFront) {
   const auto cells = [&] {
     map.add_scan(robot.scan(), Pose3::level(robot.pose, 0), time += 0.1);
     int count = 0;
-    for (const auto& c : map.cells())
+    for (const auto& c : places(map))
       count += c.cost >= 1 && std::abs(c.x - 2.5F) < 0.25F && std::abs(c.y) < 0.5F;
     return count;
   };
@@ -131,7 +131,7 @@ TEST(LidarMounting, WhatASecondLidarSeesThroughIsFree) {
     parts.push_back({low, more.size()});
     map.add_scan(ScanPoints(points, parts), {}, time);
     int cells = 0;
-    for (const auto& c : map.cells()) cells += c.cost >= 1 && std::hypot(c.x - 1.5F, c.y) < 0.5F;
+    for (const auto& c : places(map)) cells += c.cost >= 1 && std::hypot(c.x - 1.5F, c.y) < 0.5F;
     return cells;
   };
   for (int n = 0; n < 5; ++n) EXPECT_EQ(look(0.1 * n), 0);

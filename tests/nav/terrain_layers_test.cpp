@@ -2,9 +2,9 @@
 // The terrain map's layers, over ground that is not flat.
 #include <gtest/gtest.h>
 
-#include "nav/terrain/terrain_map.hpp"
 #include "tests/nav/box_world.hpp"
 #include "tests/nav/height_world.hpp"
+#include "tests/nav/places.hpp"
 
 namespace adit::nav::test {
 namespace {
@@ -33,26 +33,25 @@ struct Climber {
   void drive_to(double x) {
     for (; pose.x < x; pose.x += 0.1) look();
   }
-  std::vector<TerrainCell> within(double x0, double x1, double y0, double y1) const {
-    std::vector<TerrainCell> found;
-    for (const TerrainCell& c : map.cells())
+  std::vector<LocalPlace> within(double x0, double x1, double y0, double y1) const {
+    std::vector<LocalPlace> found;
+    for (const LocalPlace& c : places(map))
       if (c.x >= x0 && c.x <= x1 && c.y >= y0 && c.y <= y1) found.push_back(c);
     return found;
   }
   int blocked(double x0, double x1, double y0, double y1) const {
     int n = 0;
-    for (const TerrainCell& c : within(x0, x1, y0, y1)) n += c.cost >= 1;
+    for (const LocalPlace& c : within(x0, x1, y0, y1)) n += c.cost >= 1;
     return n;
   }
   /// The highest cost.
   double worst(double x0, double x1, double y0, double y1) const {
     double cost = 0;
-    for (const TerrainCell& c : within(x0, x1, y0, y1)) cost = std::max<double>(cost, c.cost);
+    for (const LocalPlace& c : within(x0, x1, y0, y1)) cost = std::max<double>(cost, c.cost);
     return cost;
   }
-  bool has(Layer layer) const {
-    const auto cells = map.cells();
-    return std::any_of(cells.begin(), cells.end(), [&](const TerrainCell& c) { return c.layer == layer; });
+  bool has(CellClass kind) const {
+    return std::ranges::any_of(places(map), [&](const LocalPlace& place) { return place.kind == kind; });
   }
 };
 
@@ -110,7 +109,7 @@ TEST(TerrainLayers, GravelIsRoughForSmallWheelsOnly) {
   on_wheels.drive_to(1.0);
   on_legs.drive_to(1.0);
   EXPECT_GT(on_wheels.worst(1.5, 3, -1, 1), 0);
-  EXPECT_TRUE(on_wheels.has(Layer::step) || on_wheels.has(Layer::roughness));
+  EXPECT_TRUE(on_wheels.has(CellClass::step));
   EXPECT_EQ(on_wheels.blocked(1.5, 3, -1, 1), 0);
   EXPECT_EQ(on_legs.worst(1.5, 3, -1, 1), 0);
 }
@@ -129,7 +128,7 @@ TEST(TerrainLayers, TheEdgeOfADropIsWhereTheGroundEnds) {
     EXPECT_EQ(robot.blocked(0.5, 1.8, -0.5, 0.5), 0) << depth;
     robot.look(30);  // now in the blind spot
     EXPECT_GT(robot.blocked(1.8, 2.2, -0.5, 0.5), 5) << depth;
-    EXPECT_TRUE(robot.has(Layer::drop));
+    EXPECT_TRUE(robot.has(CellClass::drop));
   }
 }
 
@@ -199,7 +198,7 @@ TEST(TerrainLayers, ABodyThatLeansSeesItsRampAsGround) {
   std::mt19937 random(3);
   for (int i = 0; i < 5; ++i)
     map.add_scan(robot.world.scan(wheeled(), body, 16, 450, 0.01, random), body, 0.1 * i);
-  for (const TerrainCell& c : map.cells()) ASSERT_LT(c.cost, 1) << c.x << ' ' << c.y;
+  for (const LocalPlace& c : places(map)) ASSERT_LT(c.cost, 1) << c.x << ' ' << c.y;
 }
 
 TEST(TerrainLayers, AnOdometryThatDriftsUpwardsLeavesTheTerrainAsItIs) {

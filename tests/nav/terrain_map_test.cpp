@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/terrain/terrain_map.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "tests/nav/box_world.hpp"
+#include "tests/nav/places.hpp"
 
 namespace adit::nav::test {
 namespace {
@@ -29,7 +29,7 @@ struct Looker {
   /// Cells within a box of the odometry frame.
   int count(double x0, double x1, double y0, double y1) const {
     int n = 0;
-    for (const auto& c : map.cells()) n += c.cost >= 1 && c.x >= x0 && c.x <= x1 && c.y >= y0 && c.y <= y1;
+    for (const auto& c : places(map)) n += c.cost >= 1 && c.x >= x0 && c.x <= x1 && c.y >= y0 && c.y <= y1;
     return n;
   }
 };
@@ -38,7 +38,7 @@ TEST(TerrainMap, AFloorIsFree) {
   Looker robot;
   robot.world.boxes = {{20, 20.2, -20, 20}};
   robot.look(5);
-  EXPECT_EQ(robot.map.cells().size(), 0u);
+  EXPECT_EQ(places(robot.map).size(), 0u);
 }
 
 TEST(TerrainMap, WallIsAtItsTruePosition) {
@@ -115,7 +115,7 @@ TEST(TerrainMap, ACeilingIsNoObstacle) {
   robot.world.ceiling = 0.9;
   robot.world.boxes = {{6, 6.2, -5, 5}};
   robot.look(5);
-  EXPECT_EQ(robot.map.cells().size(), 0u);
+  EXPECT_EQ(places(robot.map).size(), 0u);
 }
 
 TEST(TerrainMap, ARampIsGroundAndAWallOnItIsNot) {
@@ -126,8 +126,8 @@ TEST(TerrainMap, ARampIsGroundAndAWallOnItIsNot) {
     for (float y = -2; y < 2; y += 0.1f) points.emplace_back(x, y, 0.2f * std::max(0.0f, x - 0.5f));
   for (float y = -1; y < 1; y += 0.02f) points.emplace_back(3.0f, y, 0.2f * 2.5f + 0.3f);
   map.add_scan(points, Pose3{}, 0.0);
-  ASSERT_GT(map.cells().size(), 20u);
-  for (const auto& c : map.cells())
+  ASSERT_GT(places(map).size(), 20u);
+  for (const auto& c : places(map))
     ASSERT_TRUE(c.cost < 1 || std::fabs(c.x - 3.0f) < 0.06f) << c.x << ' ' << c.y;
 }
 
@@ -137,8 +137,8 @@ TEST(TerrainMap, AHoleIsAnObstacle) {
   for (float x = 0.4f; x < 4; x += 0.05f)
     for (float y = -1; y < 1; y += 0.05f) points.emplace_back(x, y, (x > 2 && x < 3 ? -0.6f : 0.0f));
   map.add_scan(points, Pose3{}, 0.0);
-  EXPECT_GT(map.cells().size(), 100u);
-  for (const auto& c : map.cells()) EXPECT_GT(c.x, 1.9f);
+  EXPECT_GT(places(map).size(), 100u);
+  for (const auto& c : places(map)) EXPECT_GT(c.x, 1.9f);
 }
 
 TEST(TerrainMap, PersonWhoLeftLeavesNoObstacle) {
@@ -160,7 +160,7 @@ TEST(TerrainMap, MeasuresTheAgeOfAnObstacle) {
   robot.world.boxes.push_back({1.5, 1.7, 0.6, 1.0});  // a team mate comes
   robot.look(3);
   float oldest = 0, youngest = 1e9f;
-  for (const auto& c : robot.map.cells()) {
+  for (const auto& c : places(robot.map)) {
     oldest = std::max(oldest, c.age);
     youngest = std::min(youngest, c.age);
   }
@@ -194,7 +194,7 @@ TEST(TerrainMap, TheOwnBodyIsNotAnObstacle) {
   TerrainMap map(wheeled());
   const std::vector<Eigen::Vector3f> mast{{0.1f, 0.1f, 0.4f}, {-0.28f, 0.2f, 0.3f}, {0.29f, -0.24f, 0.2f}};
   map.add_scan(mast, Pose3{}, 0.0);
-  EXPECT_EQ(map.cells().size(), 0u);
+  EXPECT_EQ(places(map).size(), 0u);
 }
 
 TEST(TerrainMap, SurvivesBadPoints) {
@@ -204,7 +204,7 @@ TEST(TerrainMap, SurvivesBadPoints) {
                                          {0, 0, 0.5f}, {1e30f, 0, 0}, {0, 0, 0},   {1e-3f, 0, 9}};
   map.add_scan(bad, Pose3{}, 0.0);
   map.add_scan(PointCloud{}, Pose3{}, 0.1);
-  EXPECT_EQ(map.cells().size(), 0u);
+  EXPECT_EQ(places(map).size(), 0u);
 }
 
 TEST(TerrainMap, TakesScansLargerThanAnyLidars) {
@@ -214,8 +214,8 @@ TEST(TerrainMap, TakesScansLargerThanAnyLidars) {
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 500'000; ++i) points.emplace_back(at(random), at(random), z(random));
   for (int i = 0; i < 3; ++i) map.add_scan(points, Pose3{}, 0.1 * i);
-  EXPECT_GT(map.cells().size(), 10'000u);
-  EXPECT_LE(map.cells().size(), map.max_cells());
+  EXPECT_GT(places(map).size(), 10'000u);
+  EXPECT_LE(places(map).size(), map.max_places());
 }
 
 TEST(TerrainMap, ForgetsPlacesBeyondItsRange) {
@@ -223,14 +223,14 @@ TEST(TerrainMap, ForgetsPlacesBeyondItsRange) {
   robot.world.boxes = {{-30, 30, 2, 2.2}, {-30, 30, -2.2, -2}};
   for (; robot.pose.x < 15; robot.pose.x += 0.25) {
     robot.look();
-    for (const auto& c : robot.map.cells())
+    for (const auto& c : places(robot.map))
       ASSERT_LT(std::hypot(c.x - robot.pose.x, c.y - robot.pose.y), 5.1);
   }
-  EXPECT_GT(robot.map.cells().size(), 200u);
+  EXPECT_GT(places(robot.map).size(), 200u);
   robot.map.clear();
-  EXPECT_EQ(robot.map.cells().size(), 0u);
+  EXPECT_EQ(places(robot.map).size(), 0u);
   robot.look(2);
-  EXPECT_GT(robot.map.cells().size(), 200u);
+  EXPECT_GT(places(robot.map).size(), 200u);
 }
 
 TEST(TerrainMap, OneLevelRingIsEnoughForAWall) {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "nav/terrain/plane_fit.hpp"
-#include "nav/terrain/terrain_map.hpp"
 #include "tests/nav/box_world.hpp"
 #include "tests/nav/height_world.hpp"
+#include "tests/nav/places.hpp"
 
 namespace adit::nav::test {
 namespace {
@@ -39,15 +39,15 @@ std::pair<int, int> drops_on_plane(double slope, double bias, double yaw) {
   std::mt19937 random(7);
   const Eigen::Quaterniond wrong = attitude(bias * M_PI / 180, bias * M_PI / 180, 0);
   const auto truth = attitude(0, -std::atan(slope), 0) * attitude(0, 0, yaw);
-  std::vector<TerrainMap::Kind> kinds;
+  LocalMapBuilder builder;
   std::pair<int, int> count{0, 0};
   for (int i = 0; i < 20; ++i) {
     const Pose3 body{{0.1 * i, 0, slope * 0.1 * i}, truth};
     map.add_scan(world.scan(platform, body, 16, 120, 0.02, random), {body.position, truth * wrong}, 0.1 * i);
-    map.classify_cells(kinds);
-    for (const TerrainMap::Kind kind : kinds) {
-      count.first += kind == TerrainMap::Kind::drop;
-      count.second += kind != TerrainMap::Kind::unknown && kind != TerrainMap::Kind::obstacle;
+    builder.make(map, {});
+    for (const CellClass kind : builder.ground_classes()) {
+      count.first += kind == CellClass::drop;
+      count.second += kind != CellClass::unknown;
     }
   }
   return count;
@@ -74,7 +74,7 @@ TEST(TerrainTilt, RegistersAnUnreportedPitch) {
     const Pose3 body{{0.1 * i, 0, 0}, attitude(0, pitch, 0)};
     map.add_scan(world.scan(platform, body, 16, 240, 0.01, random), Pose3::level({0.1 * i, 0, 0}, 0),
                  0.1 * i);
-    for (const TerrainCell& cell : map.cells())
+    for (const LocalPlace& cell : places(map))
       ASSERT_TRUE(cell.cost < 1 || std::fabs(cell.y) > 1.8f) << i << ": " << cell.x << ' ' << cell.y;
   }
   EXPECT_NEAR(map.tilt_error().x(), -0.035f, 0.006f);
@@ -94,8 +94,8 @@ TEST(TerrainTilt, FindsEveryEdgeFromTwoMetres) {
     for (double x = 0.5; x <= 1.001 && !seen; x += 0.1) {
       const Pose3 body = Pose3::level({x, 0, 0}, 0);
       map.add_scan(world.scan(platform, body, 16, 180, 0.02, random), body, x);
-      for (const TerrainCell& cell : map.cells())
-        seen |= cell.layer == Layer::drop && cell.cost >= 1 && std::fabs(cell.y) < 0.3f &&
+      for (const LocalPlace& cell : places(map))
+        seen |= cell.kind == CellClass::drop && cell.cost >= 1 && std::fabs(cell.y) < 0.3f &&
                 std::fabs(cell.x - 3) < 0.35f;
     }
     found += seen;
@@ -128,8 +128,8 @@ TEST(TerrainTilt, RingsThatDriftDuringASweepMakeNoDrop) {
   std::mt19937 random(5);
   for (int i = 0; i < 10; ++i) {
     map.add_scan(scan_while_pitching(world, platform, i < 3 ? 0.0 : 0.05, random), Pose3{}, 0.1 * i);
-    for (const TerrainCell& cell : map.cells())
-      ASSERT_TRUE(cell.cost < 1 || cell.layer != Layer::drop) << i << ": " << cell.x << ' ' << cell.y;
+    for (const LocalPlace& cell : places(map))
+      ASSERT_TRUE(cell.cost < 1 || cell.kind != CellClass::drop) << i << ": " << cell.x << ' ' << cell.y;
   }
 }
 
@@ -146,8 +146,8 @@ TEST(TerrainTilt, AMirrorMakesNoDrop) {
         p = Eigen::Vector3f(0, 0, 0.5f) + 1.5f * (p - Eigen::Vector3f(0, 0, 0.5f));
     map.add_scan(scan, Pose3{}, 0.1 * i);
   }
-  for (const TerrainCell& cell : map.cells())
-    EXPECT_TRUE(cell.cost < 1 || cell.layer != Layer::drop) << cell.x << ' ' << cell.y;
+  for (const LocalPlace& cell : places(map))
+    EXPECT_TRUE(cell.cost < 1 || cell.kind != CellClass::drop) << cell.x << ' ' << cell.y;
 }
 
 }  // namespace
