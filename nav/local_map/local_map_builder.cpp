@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <mutex>
 
 namespace adit::nav {
 namespace {
@@ -39,26 +38,18 @@ std::int8_t aside_of(float metres) {
 
 }  // namespace
 
-struct LocalMapBuilder::Stock {
-  static constexpr std::size_t kMaxMaps = 2;  // Beside those in use.
-  std::mutex mutex{};
-  std::vector<std::unique_ptr<LocalMap>> maps{};
-};
-
-LocalMapBuilder::LocalMapBuilder() : stock_(std::make_shared<Stock>()) {
-  stock_->maps.reserve(Stock::kMaxMaps);
-}
-
 std::shared_ptr<LocalMap> LocalMapBuilder::begin(const LocalMapScan& scan) {
-  std::unique_ptr<LocalMap> map;
-  {
-    const std::lock_guard lock(stock_->mutex);
-    if (!stock_->maps.empty()) {
-      map = std::move(stock_->maps.back());
-      stock_->maps.pop_back();
-    }
+  constexpr std::size_t kMaxMaps = 8;
+  std::shared_ptr<LocalMap> map;
+  if (const auto unused = std::ranges::find(made_, 1, &std::shared_ptr<LocalMap>::use_count);
+      unused != made_.end()) {
+    map = *unused;
+    // Returning a share synchronises with the thread that returned the last one.
+    std::shared_ptr<LocalMap>(map).reset();
+  } else {
+    map = std::make_shared<LocalMap>();
+    if (made_.size() < kMaxMaps) made_.push_back(map);
   }
-  if (!map) map = std::make_unique<LocalMap>();
   map->scan_ = scan;
   if (map->is_placed()) {
     map->x0_ = LocalMap::cell(static_cast<float>(scan.body.position.x())) - LocalMap::kSide / 2;
@@ -68,11 +59,7 @@ std::shared_ptr<LocalMap> LocalMapBuilder::begin(const LocalMapScan& scan) {
   }
   map->cells_.assign(std::size_t{LocalMap::kSide} * LocalMap::kSide, LocalCell{});
   map->places_.clear();
-  return {map.release(), [stock = stock_](LocalMap* used) {
-            std::unique_ptr<LocalMap> back(used);
-            const std::lock_guard lock(stock->mutex);
-            if (stock->maps.size() < Stock::kMaxMaps) stock->maps.push_back(std::move(back));
-          }};
+  return map;
 }
 
 std::shared_ptr<const LocalMap> LocalMapBuilder::make(const TerrainMap& terrain, const LocalMapScan& scan,

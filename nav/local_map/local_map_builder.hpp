@@ -21,8 +21,6 @@ struct LocalMapOthers {
 /// calls must not overlap. Any thread may release a map, and its memory serves a later one.
 class LocalMapBuilder {
  public:
-  LocalMapBuilder();
-
   /// The state of `terrain`, to which `scan` was added last.
   std::shared_ptr<const LocalMap> make(const TerrainMap& terrain, const LocalMapScan& scan,
                                        const LocalMapOthers& others = {});
@@ -34,7 +32,6 @@ class LocalMapBuilder {
   std::span<const CellClass> ground_classes() const { return kinds_; }
 
  private:
-  struct Stock;
   std::shared_ptr<LocalMap> begin(const LocalMapScan& scan);
   void write_places(const TerrainMap& terrain, std::vector<LocalPlace>& places);
   void write_ground(const TerrainMap& terrain, LocalMap& map);
@@ -44,7 +41,7 @@ class LocalMapBuilder {
   template <class Change>
   static void visit_disc(LocalMap& map, const Eigen::Vector2f& at, float radius, Change&& change);
 
-  std::shared_ptr<Stock> stock_;  ///< Maps that are not used any more.
+  std::vector<std::shared_ptr<LocalMap>> made_{};  ///< Used again when nothing else holds them.
   // By index in the ground's window.
   std::vector<CellClass> kinds_{};
   std::vector<std::uint8_t> costs_{};
