@@ -86,6 +86,35 @@ check_circles() {
     }'
 }
 
+# --- links: what nav_library() of nav/CMakeLists.txt declares as USES is what the folder includes ----------------
+check_links() {
+  [ -f nav/CMakeLists.txt ] || return 0
+  { echo nav/CMakeLists.txt; cpp | grep '^nav/[^/]*/'; } | xargs -r awk '
+    FILENAME ~ /CMakeLists.txt$/ {
+      sub(/#.*/, ""); if (/^[a-z_]+\(/) from = ""
+      count = split($0, word, /[ ()]+/)
+      for (i = 1; i <= count; ++i) {
+        if (word[i] == "nav_library") { from = word[++i]; uses = 0 }
+        else if (word[i] ~ /^(USES|SOURCES)$/) uses = word[i] == "USES"
+        else if (uses && from != "" && word[i] != "") line[from, word[i]] = FNR
+      }
+      next
+    }
+    /^[ \t]*#[ \t]*include[ \t]*"nav\/[^\/"]*\// {
+      split(FILENAME, path, "/"); split($0, parts, "/")
+      if (path[2] == parts[2]) next
+      used[path[2], parts[2]] = 1
+      if (!((path[2], parts[2]) in line))
+        printf "%s:%d: nav/CMakeLists.txt does not name %s among what %s USES\n", FILENAME, FNR, parts[2], path[2]
+    }
+    END {
+      for (pair in line) if (!(pair in used)) {
+        split(pair, names, SUBSEP)
+        printf "nav/CMakeLists.txt:%d: %s USES %s, but includes none of it\n", line[pair], names[1], names[2]
+      }
+    }'
+}
+
 # --- sizes: median at most 120 lines, nine of ten at most 400, none above 600 -------------------------
 check_sizes() {
   cpp | xargs -r wc -l | awk '$2 != "total" { print $1, $2 }' | sort -n | awk '
@@ -232,7 +261,7 @@ if [ "${1:-}" = --count ]; then
   exit
 fi
 checks=("$@")
-[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation spdx sleeps sharing listed qml format shell)
+[ ${#checks[@]} -gt 0 ] || checks=(includes circles links sizes words language citation spdx sleeps sharing listed qml format shell)
 status=0
 for check in "${checks[@]}"; do
   declare -F "check_$check" > /dev/null || { echo "lint: no check '$check'" >&2; exit 2; }

@@ -77,6 +77,7 @@ std::shared_ptr<const LocalMap> LocalMapBuilder::make(const TerrainMap& terrain,
 std::shared_ptr<const LocalMap> LocalMapBuilder::make(const AirMap& air, const LocalMapScan& scan,
                                                       const LocalMapOthers& others) {
   auto map = begin(scan);
+  map->places_.reserve(AirMap::kMax);
   for (const Eigen::Vector2f& place : air.cells()) {
     map->places_.push_back({.x = place.x(), .y = place.y(), .kind = CellClass::obstacle});
     if (!LocalMap::is_place(place.x(), place.y())) continue;
@@ -95,6 +96,7 @@ void LocalMapBuilder::write_places(const TerrainMap& terrain, std::vector<LocalP
   const int side = ground.side(), cells = static_cast<int>(ground.cells());
   kinds_.assign(ground.cells(), CellClass::unknown);
   costs_.assign(ground.cells(), 0);
+  places.reserve(terrain.max_places());
   if (!ground.grown()) return;
   for (int k = 0; k < cells; ++k)
     if (ground.measured(k)) kinds_[k] = CellClass::ground;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kStride = 4;  // Every fourth pose of the path is checked.
 constexpr std::size_t kSectors = 120;
-constexpr float kBehind = 0.4f;  // m: a place counts as hidden when it lies this much behind an obstacle.
+constexpr float kHiddenBehind = 0.4f;  // A place so far behind an obstacle counts as hidden, m.
 
 std::size_t sector(double y, double x) {
   const double turn = std::atan2(y, x) / (2 * M_PI);
@@ -49,7 +49,8 @@ double path_speed(const Plan& plan, const Pose2& pose, const Footprint& body, co
       clear = std::min(clear, -body.depth(into.turn(dx, dy)));
     }
     double own = params.caution + params.caution_gain * std::max(0.0f, clear);
-    if (nearest[sector(at.y, at.x)] + kBehind < std::hypot(into.x, into.y)) own = std::min(own, params.blind);
+    if (nearest[sector(at.y, at.x)] + kHiddenBehind < std::hypot(into.x, into.y))
+      own = std::min(own, params.blind);
     if (own * own + before < top * top) top = std::sqrt(own * own + before);
   }
   return top;

@@ -38,6 +38,15 @@ put core/d/d.cpp '\n#include "core/b/b.hpp"\n'
 expect circles 'core/d/d.cpp:2: a circle: core/d includes core/b, whose includes lead back to core/d'
 expect circles 'core/top.hpp:1: a circle: core/top.hpp includes core/d, whose includes lead back to core/top.hpp'
 
+put nav/CMakeLists.txt '# USES a folder\nfunction(nav_library folder)\nnav_library(e SOURCES e.cpp)\nnav_library(f USES e\n  g SOURCES f.cpp)\n'
+put nav/e/e.cpp '#include "core/b/b.hpp"\n#include "nav/e/e.hpp"\n'
+put nav/f/f.cpp '#include "nav/e/e.hpp"\n#include "nav/g/h/g.hpp"\n'
+expect links ""
+put nav/e/e.hpp '\n#include "nav/g/h/g.hpp"\n'
+expect links 'nav/e/e.hpp:2: nav/CMakeLists.txt does not name g among what e USES'
+put nav/f/f.cpp '#include "nav/e/e.hpp"\n'
+expect links 'nav/CMakeLists.txt:5: f USES g, but includes none of it'
+
 put sim/long.cpp "$(printf 'x\\n%.0s' $(seq 601))"
 expect sizes 'sim/long.cpp: 601 lines'
 put core/word.cpp '// TO''DO later\n'
