@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "nav/local_map/local_map_builder.hpp"
 #include "tests/nav/box_world.hpp"
@@ -58,7 +59,11 @@ void expect_consistent(const Driven& robot) {
     const CellClass kind = robot.map->find(entry.x(), entry.y())->kind;
     EXPECT_TRUE(kind == CellClass::obstacle || kind == CellClass::mover || kind == CellClass::drop);
   }
+  std::set<std::pair<float, float>> drops;
   for (const LocalPlace& place : robot.map->places()) {
+    if (place.kind == CellClass::drop && place.cost >= 1) {
+      EXPECT_TRUE(drops.insert({place.x, place.y}).second) << "listed twice: " << place.x << " " << place.y;
+    }
     const LocalCell* cell = robot.map->find(place.x, place.y);
     ASSERT_NE(cell, nullptr);
     EXPECT_GE(int{cell->cost}, static_cast<int>(place.cost * 254.0f)) << place.x << " " << place.y;
