@@ -15,8 +15,20 @@ constexpr double kOutline = 0.1;     // m: cells of the map around a robot's out
 /// The outline of a robot, body frame of this one.
 struct Box {
   PlanarTransform T_box_body;
+  Eigen::Vector2d centre;    ///< In the body frame, m.
   double length{}, width{};  ///< Half of them, with the margin, m.
   double low{}, high{};      ///< Heights in odom, m.
+
+  /// Whether a place is near enough for contains(), which costs much more. Also true where a size is not a
+  /// number.
+  bool is_near(const Eigen::Vector2d& place) const {
+    constexpr double kRounding = 1e-6;  // m^2
+    return !((place - centre).squaredNorm() > length * length + width * width + kRounding);
+  }
+  bool contains(const Eigen::Vector2d& place, double height) const {
+    const Eigen::Vector2d in_box = T_box_body * place;
+    return height > low && height < high && std::fabs(in_box.x()) < length && std::fabs(in_box.y()) < width;
+  }
 };
 
 }  // namespace
@@ -27,9 +39,21 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   std::vector<Box> boxes;
   for (const TeamRobot& robot : team)
     if ((robot.pose.position() - body.position()).norm() <= kReach)
-      boxes.push_back({PlanarTransform(robot.pose.inverse() * body), robot.length / 2 + kPoseErrors,
-                       robot.width / 2 + kPoseErrors, robot.z - kPoseErrors, robot.z + kTallest});
+      boxes.push_back({PlanarTransform(robot.pose.inverse() * body), (body.inverse() * robot.pose).position(),
+                       robot.length / 2 + kPoseErrors, robot.width / 2 + kPoseErrors, robot.z - kPoseErrors,
+                       robot.z + kTallest});
   if (boxes.empty()) return scan;
+  const auto on_robot = [&](const Eigen::Vector3f& point) {
+    const Eigen::Vector2d place = point.head<2>().cast<double>();
+    return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
+      if (!box.is_near(place)) return false;
+      const Eigen::Vector3d turned = scan->body.orientation * point.cast<double>();
+      return box.contains(place, scan->body.position.z() + turned.z());
+    });
+  };
+  const auto first = std::find_if(scan->points.begin(), scan->points.end(), on_robot);
+  if (first == scan->points.end()) return scan;
+  const auto clean = static_cast<std::size_t>(first - scan->points.begin());
   auto rest = std::make_shared<Scan>();
   rest->body = scan->body;
   rest->located = scan->located;
@@ -43,14 +67,7 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   for (std::size_t n = 0; n < scan->points.size(); ++n) {
     while (n >= end && part + 1 < scan->parts.size()) end += scan->parts[++part].count;
     const Eigen::Vector3f& point = scan->points[n];
-    const Eigen::Vector2d place = point.head<2>().cast<double>();
-    const double height = scan->body.position.z() + (scan->body.orientation * point.cast<double>()).z();
-    const bool inside = std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
-      const Eigen::Vector2d in_box = box.T_box_body * place;
-      return height > box.low && height < box.high && std::fabs(in_box.x()) < box.length &&
-             std::fabs(in_box.y()) < box.width;
-    });
-    if (inside) continue;
+    if (n >= clean && on_robot(point)) continue;
     rest->points.push_back(point);
     if (!rest->parts.empty()) ++rest->parts[part].count;
     if (!scan->isolated.empty()) rest->isolated.push_back(scan->isolated[n]);

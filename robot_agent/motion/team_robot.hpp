@@ -19,7 +19,7 @@ struct TeamRobot {
   double cost{};  ///< Added to a route across it.
 };
 
-/// Returns the scan without the returns of the robots, `scan` itself if none of them is near. The route map
+/// Returns the scan without the returns of the robots, `scan` itself if it has none. The route map
 /// must not contain robots, which drive on or make way. Local planner and collision monitor get the complete
 /// scan, so that no message of another robot hides an obstacle from them.
 std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan,

@@ -36,5 +36,25 @@ TEST(TeamRobots, OnlyTheReturnsOfTheirBodiesAreTakenOut) {
   EXPECT_EQ(rest->parts[1].count, 3U);
 }
 
+TEST(TeamRobots, ReturnsAtTheCornersOfATurnedBodyAreTakenOut) {
+  auto scan = std::make_shared<Scan>();
+  scan->body = Pose3::level({2.0, -1.0, 0.7}, 0.0);
+  const TeamRobot robot{"r2", Pose2{4, 1, 2.1}, 0.0, 1.4, 0.6, 0.0};
+  std::size_t inside = 0;
+  for (double x = -1.975; x < 2; x += 0.05)
+    for (double y = -1.975; y < 2; y += 0.05) {
+      const Eigen::Vector2d at = robot.pose * Eigen::Vector2d(x, y);
+      scan->points.push_back((scan->body.inverse() * Eigen::Vector3d(at.x(), at.y(), 0.5)).cast<float>());
+      inside += std::fabs(x) < 1.0 && std::fabs(y) < 0.6;
+    }
+  EXPECT_EQ(scan->points.size() - without_team(scan, {robot})->points.size(), inside);
+}
+
+TEST(TeamRobots, AScanWithoutTheirReturnsIsNotCopied) {
+  auto scan = std::make_shared<Scan>();
+  scan->points = {{1, 0, 0.5f}, {5, 0, 0.5f}};
+  EXPECT_EQ(without_team(scan, {{"r2", Pose2{3, 0, 0}, 0.0, 1.0, 0.6, 0.0}}), scan);
+}
+
 }  // namespace
 }  // namespace adit::agent
