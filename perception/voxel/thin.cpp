@@ -10,23 +10,35 @@
 
 namespace adit::perception {
 
+namespace {
+
+std::uint64_t hash_of(std::uint64_t key) { return (key ^ key >> 32) * 0x9e3779b97f4a7c15ULL; }
+
+}  // namespace
+
+std::uint32_t& Thinner::slot(std::uint64_t key, std::uint64_t hash) {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t at = (hash ^ hash >> 29) & mask;
+  while (slots_[at] != kFree && voxels_[slots_[at]].key != key) at = (at + 1) & mask;
+  return slots_[at];
+}
+
+void Thinner::clear_slots(std::size_t count) {
+  slots_.assign(count, kFree);
+  for (std::uint32_t n = 0; n < voxels_.size(); ++n) slot(voxels_[n].key, hash_of(voxels_[n].key)) = n;
+}
+
 const std::vector<Eigen::Vector3f>& Thinner::thin(std::span<const Eigen::Vector3f> points) {
-  // At most half full.
-  const std::size_t slots = std::bit_ceil(std::max<std::size_t>(1024, 2 * points.size()));
-  if (voxels_.size() < slots) {
-    voxels_.assign(slots, {});
-    number_ = 0;
-  }
-  const std::size_t mask = voxels_.size() - 1;
   const float nearest = params_.min_range * params_.min_range,
               farthest = params_.max_range * params_.max_range;
   const bool first = edge_ == 0.0f;
   if (first) edge_ = 4 * params_.min_edge;
   // The first cloud finds its edge; later ones follow with one step each.
   for (int round = 0; round < (first ? 4 : 1); ++round) {
-    ++number_;
     thinned_.clear();
-    points_.clear();
+    voxels_.clear();
+    // Twice as many voxels as wanted fill half of it.
+    clear_slots(std::max(slots_.size(), std::bit_ceil(std::max<std::size_t>(1024, 4 * params_.wanted))));
     const float scale = 1.0f / edge_;
     for (const Eigen::Vector3f& p : points) {
       const float range = p.squaredNorm();
@@ -34,16 +46,16 @@ const std::vector<Eigen::Vector3f>& Thinner::thin(std::span<const Eigen::Vector3
       if (!(range >= nearest && range <= farthest)) continue;
       const auto index = [scale](float v) { return round_down(v * scale); };
       const std::uint64_t key = voxel_key(index(p.x()), index(p.y()), index(p.z()));
-      std::uint64_t hash = (key ^ key >> 32) * 0x9e3779b97f4a7c15ULL;
-      std::size_t at = (hash ^ hash >> 29) & mask;
-      while (voxels_[at].cloud == number_ && voxels_[at].key != key) at = (at + 1) & mask;
-      if (voxels_[at].cloud != number_) {
-        voxels_[at] = {key, number_, static_cast<std::uint32_t>(thinned_.size())};
+      const std::uint64_t hash = hash_of(key);
+      std::uint32_t& n = slot(key, hash);
+      if (n == kFree) {
+        n = static_cast<std::uint32_t>(voxels_.size());
+        voxels_.push_back({key, 1});
         thinned_.push_back(p);
-        points_.push_back(1);
+        if (2 * voxels_.size() > slots_.size()) clear_slots(2 * slots_.size());
         continue;
       }
-      const std::uint32_t n = voxels_[at].at, count = ++points_[n];
+      const std::uint32_t count = ++voxels_[n].points;
       const std::uint64_t draw = (hash + count) * 0xd1342543de82ef95ULL >> 32;
       if (draw * count >> 32 == 0) thinned_[n] = p;  // With probability 1 / count.
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -36,13 +37,19 @@ class Thinner {
   float edge_{0.0f};  ///< 0: no cloud yet.
   struct Voxel {
     std::uint64_t key{};
-    std::uint32_t cloud{};  ///< Number of the cloud whose voxel it is.
-    std::uint32_t at{};     ///< Index of its point in thinned_.
+    std::uint32_t points{};  ///< So far.
   };
-  std::vector<Voxel> voxels_{};  ///< Hash table.
-  std::uint32_t number_{};       ///< Of the cloud.
+  static constexpr std::uint32_t kFree = ~std::uint32_t{0};
+  /// The slot of a voxel; kFree in it: the voxel is new.
+  std::uint32_t& slot(std::uint64_t key, std::uint64_t hash);
+  /// Makes an index with `count` slots, a power of two, for the voxels so far.
+  void clear_slots(std::size_t count);
+
   std::vector<Eigen::Vector3f> thinned_{};
-  std::vector<std::uint32_t> points_{};  ///< Points so far in the voxel of each in thinned_.
+  std::vector<Voxel> voxels_{};  ///< Of each point in thinned_.
+  /// Hash table of indices into voxels_, at most half full. It holds nothing else, so that it stays in the
+  /// processor's cache.
+  std::vector<std::uint32_t> slots_{};
 };
 
 }  // namespace adit::perception

@@ -33,6 +33,17 @@ TEST(Thinner, LeavesAboutAsManyPointsInAnyRoom) {
   }
 }
 
+TEST(Thinner, KeepsOnePointOfEachVoxelWhenThereAreManyMoreThanWanted) {
+  Thinner thinner({.wanted = 10, .min_edge = 0.5f, .max_edge = 0.5f});
+  std::vector<Eigen::Vector3f> points;
+  for (int round = 0; round < 3; ++round)
+    for (int x = 0; x < 100; ++x)
+      for (int y = 0; y < 100; ++y)
+        points.push_back({0.5f * static_cast<float>(x) + 0.55f, 0.5f * static_cast<float>(y) + 0.25f, 0.25f});
+  EXPECT_EQ(thinner.thin(points).size(), 10'000u);
+  EXPECT_EQ(thinner.thin(points).size(), 10'000u);
+}
+
 TEST(Thinner, LeavesOutPointsThatAreNoReturns) {
   std::vector<Eigen::Vector3f> points = room(5, 2000);
   const float nan = std::numeric_limits<float>::quiet_NaN(),
