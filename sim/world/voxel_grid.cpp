@@ -9,6 +9,7 @@
 namespace adit::sim {
 namespace {
 
+constexpr int kMostCells = 255;  // What a byte counts.
 constexpr int kMostLayers = 15;  // What half a byte counts.
 
 /// `value` brought between two others. Not std::clamp, which GCC 12 compiles to branches.
@@ -40,7 +41,8 @@ VoxelGrid::VoxelGrid(const Eigen::Vector2d& origin, double resolution, int nx, i
       open_sides_(open_sides),
       levels_(std::move(levels)),
       strides_{} {
-  strides_[kTowardsBoth].resize(static_cast<std::size_t>(nx) * ny * (levels_.size() - 1));
+  // One more than cells: VoxelLanes reads a byte beyond.
+  strides_[kTowardsBoth].resize(static_cast<std::size_t>(nx) * ny * (levels_.size() - 1) + 1);
 }
 
 void VoxelGrid::build() {
@@ -50,33 +52,66 @@ void VoxelGrid::build() {
     for (int j = 0; j < ny_; ++j)
       for (int i = 0; i < nx_; ++i)
         for (int k = 0; k < layers(); ++k)
-          mirrored[index(quadrant & 1 ? i : nx_ - 1 - i, quadrant & 2 ? j : ny_ - 1 - j, k)].edge =
+          mirrored[index(quadrant & 1 ? i : nx_ - 1 - i, quadrant & 2 ? j : ny_ - 1 - j, k)].width =
               solid(i, j, k) ? 0 : 1;
   }
+  // Open cells in a line along x and along y, from each cell of the newest row on.
+  struct Run {
+    int width{}, depth{};
+  };
+  std::vector<Run> runs(static_cast<std::size_t>(nx_) * layers());
   for (std::vector<Stride>& strides : strides_)
     for (int j = ny_ - 1; j >= 0; --j)
       for (int i = nx_ - 1; i >= 0; --i) {
         Stride* const column = &strides[index(i, j, 0)];
+        Run* const run = &runs[static_cast<std::size_t>(i) * layers()];
         // What lies beside the grid counts as solid: no stride leaves it by more than one cell.
-        if (i < nx_ - 1 && j < ny_ - 1) {
-          const Stride *const right = &strides[index(i + 1, j, 0)],
-                              *const left = &strides[index(i, j + 1, 0)],
-                              *const both = &strides[index(i + 1, j + 1, 0)];
-          for (int k = 0; k < layers(); ++k) {
-            const int ahead = std::min({right[k].edge, left[k].edge, both[k].edge});
-            if (column[k].edge != 0) column[k].edge = static_cast<std::uint8_t>(std::min(255, ahead + 1));
+        const bool at_side = i == nx_ - 1 || j == ny_ - 1;
+        for (int k = 0; k < layers(); ++k) {
+          if (column[k].width == 0) {
+            run[k] = {};
+            continue;
           }
+          column[k].depth = 1;
+          if (at_side) {
+            run[k] = {1, 1};
+            continue;
+          }
+          run[k] = {std::min(kMostCells, run[layers() + k].width + 1),
+                    std::min(kMostCells, run[k].depth + 1)};
+          choose_rectangle(column[k], run[k].width, run[k].depth, strides[index(i + 1, j, k)],
+                           strides[index(i, j + 1, k)], strides[index(i + 1, j + 1, k)]);
         }
         for (int k = 0; k < layers(); ++k) {
           const auto reach = [&](int step) {
             int n = 0;
             for (int at = k + step; n < kMostLayers && at >= 0 && at < layers(); at += step, ++n)
-              if (column[at].edge < column[k].edge) break;
+              if (column[at].width < column[k].width || column[at].depth < column[k].depth) break;
             return n;
           };
-          if (column[k].edge != 0) column[k].layers = static_cast<std::uint8_t>(reach(-1) | reach(1) << 4);
+          if (column[k].width != 0) column[k].layers = static_cast<std::uint8_t>(reach(-1) | reach(1) << 4);
         }
       }
+}
+
+void VoxelGrid::choose_rectangle(Stride& stride, int widest, int deepest, const Stride& right,
+                                 const Stride& left, const Stride& both) {
+  int most = 0;
+  const auto propose = [&](int width, int depth) {
+    width = std::min(width, widest);
+    depth = std::min(depth, deepest);
+    // What makes a rectangle longer than two squares is worth nothing to most rays.
+    const int worth = std::min(width, 2 * depth) * std::min(depth, 2 * width);
+    if (worth <= most) return;
+    most = worth;
+    stride.width = static_cast<std::uint8_t>(width);
+    stride.depth = static_cast<std::uint8_t>(depth);
+  };
+  propose(widest, 1);
+  propose(1, deepest);
+  propose(right.width + 1, right.depth);
+  propose(left.width, left.depth + 1);
+  propose(both.width + 1, both.depth + 1);
 }
 
 VoxelGrid::Start VoxelGrid::locate(const Eigen::Vector3d& position) const {
@@ -202,8 +237,8 @@ bool VoxelGrid::cast_together(const Start& from, std::span<const Eigen::Vector3d
   }
   if (lanes.count == 0) return true;
   for (int at = lanes.count; at % VoxelLanes::kWide != 0; ++at) put(last, at);
-  static_assert(sizeof(Stride) == 2);
-  lanes.strides = &strides->edge;
+  static_assert(sizeof(Stride) == VoxelLanes::kBytes);
+  lanes.strides = &strides->width;
   lanes.levels = levels_.data();
   lanes.nx = nx_;
   lanes.ny = ny_;
@@ -256,16 +291,16 @@ void VoxelGrid::cast_each(const Start& from, std::span<const Eigen::Vector3d> di
     const auto border = [&](int layer) { return (levels[layer + ray.up] - z) * ray.az; };
     while (true) {
       const Stride stride = ray.strides[j * row + i * top + k];
-      if (stride.edge == 0) {
+      if (stride.width == 0) {
         range = t;
         break;
       }
-      const int next_i = i + stride.edge, next_j = j + stride.edge;
+      const int next_i = i + stride.width, next_j = j + stride.depth;
       const double tx = (next_i - ray.gx) * ray.ax, ty = (next_j - ray.gy) * ray.ay;
       const double side = std::min(tx, ty);
       const int last = k + ray.dk * (ray.up ? stride.layers >> 4 : stride.layers & kMostLayers);
       const double tz = border(last);
-      // The axes that do not cross a border are clamped to the square: rounding cannot lead astray.
+      // The axes that do not cross a border are clamped to the rectangle: rounding cannot lead astray.
       if (tz < side) {
         t = std::max(t, tz);
         if (t >= max_range) {

@@ -13,9 +13,9 @@ namespace adit::sim {
 /// Solid or open cells: square columns of equal size, cut into layers of any thickness. An OctoMap has
 /// layers as thick as its cells; a floor plan needs a single one.
 ///
-/// For each of the four ways a ray can head, every open cell keeps the edge of the largest open square of
-/// its layer that begins there and lies that way, and how many layers above and below leave that square open,
-/// too: a ray crosses open space in a few strides.
+/// For each of the four ways a ray can head, every open cell keeps a large open rectangle of its layer that
+/// begins there and lies that way, and how many layers above and below leave that rectangle open, too: a ray
+/// crosses open space in a few strides.
 class VoxelGrid {
  public:
   /// Nothing is hit within the range asked for.
@@ -39,9 +39,9 @@ class VoxelGrid {
   bool open_sides() const { return open_sides_; }
 
   bool inside(int i, int j) const { return i >= 0 && i < nx_ && j >= 0 && j < ny_; }
-  bool solid(int i, int j, int k) const { return strides_[kTowardsBoth][index(i, j, k)].edge == 0; }
+  bool solid(int i, int j, int k) const { return strides_[kTowardsBoth][index(i, j, k)].width == 0; }
   /// To be followed by build() after the last change.
-  void set(int i, int j, int k, bool solid) { strides_[kTowardsBoth][index(i, j, k)].edge = solid ? 0 : 1; }
+  void set(int i, int j, int k, bool solid) { strides_[kTowardsBoth][index(i, j, k)].width = solid ? 0 : 1; }
   /// Computes the strides.
   void build();
 
@@ -75,10 +75,15 @@ class VoxelGrid {
   struct Ray;
   /// The open box that begins at a cell.
   struct Stride {
-    std::uint8_t edge;    ///< Of its square, cells; 0: the cell is solid.
+    std::uint8_t width;   ///< Of its rectangle along x, cells; 0: the cell is solid.
+    std::uint8_t depth;   ///< Along y, cells.
     std::uint8_t layers;  ///< Layers below (low half of the byte) and above (high half) that it reaches.
   };
   static constexpr int kTowardsBoth = 3;
+  /// Chooses the rectangle of an open cell, at most `widest` and `deepest`, which are its open cells in a
+  /// line. One of the cells beside it, grown by this cell's row or column, is near the largest.
+  static void choose_rectangle(Stride& stride, int widest, int deepest, const Stride& right,
+                               const Stride& left, const Stride& both);
   /// Puts a ray on its way, or gives its range at once (false).
   bool prepare(const Start& from, const Eigen::Vector3d& direction, double max_range, Ray& ray,
                double& range) const;

@@ -36,13 +36,14 @@ struct Group {
   __m128i far, outside;  ///< How the others ended.
 };
 
-/// Takes down which cells the rays are in. Their strides are fetched while the other groups are under way: half
-/// of the time went into waiting for them.
+/// Takes down which cells the rays are in. Their strides are fetched while the other groups are under way:
+/// half of the time went into waiting for them.
 ADIT_AVX2 inline void enter_cells(Group& g, const VoxelLanes& lanes) {
   const __m128i row = _mm_set1_epi32(lanes.nx * lanes.layers), top = _mm_set1_epi32(lanes.layers);
   g.cell = _mm_add_epi32(_mm_add_epi32(_mm_mullo_epi32(g.j, row), _mm_mullo_epi32(g.i, top)), g.k);
   const auto fetch = [&lanes](int index) {
-    _mm_prefetch(reinterpret_cast<const char*>(lanes.strides + 2 * static_cast<std::ptrdiff_t>(index)),
+    _mm_prefetch(reinterpret_cast<const char*>(lanes.strides +
+                                               VoxelLanes::kBytes * static_cast<std::ptrdiff_t>(index)),
                  _MM_HINT_T0);
   };
   fetch(_mm_extract_epi32(g.cell, 0));
@@ -76,9 +77,9 @@ ADIT_AVX2 inline void load(Group& g, const VoxelLanes& lanes, int first) {
 // Four loads take less time than one gather instruction, which is slow on many processors.
 ADIT_AVX2 inline __m128i strides_at(const std::uint8_t* strides, __m128i cell) {
   const auto load_one = [strides](int index) {
-    std::uint16_t both;
-    std::memcpy(&both, strides + 2 * static_cast<std::ptrdiff_t>(index), sizeof both);
-    return static_cast<int>(both);
+    std::uint32_t stride;
+    std::memcpy(&stride, strides + VoxelLanes::kBytes * static_cast<std::ptrdiff_t>(index), sizeof stride);
+    return static_cast<int>(stride);
   };
   return _mm_setr_epi32(load_one(_mm_extract_epi32(cell, 0)), load_one(_mm_extract_epi32(cell, 1)),
                         load_one(_mm_extract_epi32(cell, 2)), load_one(_mm_extract_epi32(cell, 3)));
@@ -107,12 +108,13 @@ ADIT_AVX2 inline bool stride(Group& g, const VoxelLanes& lanes) {
   const __m128i one = _mm_set1_epi32(1);
   const __m128i top = _mm_set1_epi32(lanes.layers);
   const __m128i word = strides_at(lanes.strides, g.cell);
-  const __m128i edge = _mm_and_si128(word, _mm_set1_epi32(0xff));
-  const __m128i reach = _mm_and_si128(_mm_srlv_epi32(_mm_srli_epi32(word, 8), g.shift), _mm_set1_epi32(0xf));
-  g.active = _mm_andnot_si128(_mm_cmpeq_epi32(edge, _mm_setzero_si128()), g.active);
+  const __m128i width = _mm_and_si128(word, _mm_set1_epi32(0xff));
+  const __m128i depth = _mm_and_si128(_mm_srli_epi32(word, 8), _mm_set1_epi32(0xff));
+  const __m128i reach = _mm_and_si128(_mm_srlv_epi32(_mm_srli_epi32(word, 16), g.shift), _mm_set1_epi32(0xf));
+  g.active = _mm_andnot_si128(_mm_cmpeq_epi32(width, _mm_setzero_si128()), g.active);
   if (_mm_movemask_epi8(g.active) == 0) return false;
 
-  const __m128i next_i = _mm_add_epi32(g.i, edge), next_j = _mm_add_epi32(g.j, edge);
+  const __m128i next_i = _mm_add_epi32(g.i, width), next_j = _mm_add_epi32(g.j, depth);
   const __m256d tx = _mm256_mul_pd(_mm256_sub_pd(_mm256_cvtepi32_pd(next_i), g.gx), g.ax);
   const __m256d ty = _mm256_mul_pd(_mm256_sub_pd(_mm256_cvtepi32_pd(next_j), g.gy), g.ay);
   const __m256d side = _mm256_min_pd(tx, ty);

@@ -11,8 +11,10 @@ struct VoxelLanes {
   static constexpr int kWide = 4;  ///< Rays of a group; the last group's other rays hold copies of any ray.
   int count{0};
 
-  /// The grid. Strides: two bytes a cell, the edge of its open square and the layers that it reaches.
+  /// The grid. Strides: three bytes a cell, width and depth of its open rectangle and the layers that it
+  /// reaches. One more byte behind them must be readable.
   const std::uint8_t* strides{};
+  static constexpr int kBytes = 3;
   const double* levels{};     ///< Heights of the layers' borders, m.
   double layers_per_metre{};  ///< 0: layers of different thickness.
   int nx{}, ny{}, layers{};
