@@ -188,7 +188,7 @@ bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, dou
     if (ray.t >= max_range) return false;
   }
   // An axis that the ray does not move along gets a border far away instead of a division by zero.
-  constexpr double far = 1e30;
+  constexpr double far = VoxelLanes::kFar;
   const bool px = direction.x() >= 0.0, py = direction.y() >= 0.0, pz = direction.z() >= 0.0;
   ray.strides = strides_[(px ? 1 : 0) + (py ? 2 : 0)].data();
   ray.gx = px ? start.gx : nx_ - start.gx;
@@ -209,36 +209,28 @@ bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, dou
 
 bool VoxelGrid::cast_together(const Start& from, std::span<const Eigen::Vector3d> directions,
                               double max_range, std::span<double> ranges) const {
+  const bool px = directions[0].x() >= 0.0, py = directions[0].y() >= 0.0;
   VoxelLanes lanes;
-  std::array<std::size_t, VoxelLanes::kMax> which;
-  const Stride* strides = nullptr;
-  Ray last{};
-  const auto put = [&](const Ray& ray, int at) {
-    lanes.gx[at] = ray.gx;
-    lanes.gy[at] = ray.gy;
-    lanes.sx[at] = ray.sx;
-    lanes.sy[at] = ray.sy;
-    lanes.ax[at] = ray.ax;
-    lanes.ay[at] = ray.ay;
-    lanes.az[at] = ray.az;
-    lanes.t[at] = ray.t;
-    lanes.i[at] = ray.i;
-    lanes.j[at] = ray.j;
-    lanes.k[at] = ray.k;
-    lanes.up[at] = ray.up;
-  };
-  for (std::size_t n = 0; n < directions.size(); ++n) {
-    Ray ray;
-    if (!prepare(from, directions[n], max_range, ray, ranges[n])) continue;
-    if (strides && strides != ray.strides) return false;
-    strides = ray.strides;
-    which[static_cast<std::size_t>(lanes.count)] = n;
-    put(last = ray, lanes.count++);
+  for (const Eigen::Vector3d& direction : directions) {
+    if ((direction.x() >= 0.0) != px || (direction.y() >= 0.0) != py) return false;
+    lanes.dx[lanes.count] = std::abs(direction.x());
+    lanes.dy[lanes.count] = std::abs(direction.y());
+    lanes.dz[lanes.count++] = direction.z();
   }
-  if (lanes.count == 0) return true;
-  for (int at = lanes.count; at % VoxelLanes::kWide != 0; ++at) put(last, at);
+  for (int at = lanes.count; at % VoxelLanes::kWide != 0; ++at) {
+    lanes.dx[at] = lanes.dx[0];
+    lanes.dy[at] = lanes.dy[0];
+    lanes.dz[at] = lanes.dz[0];
+  }
+  lanes.gx = px ? from.gx : nx_ - from.gx;
+  lanes.gy = py ? from.gy : ny_ - from.gy;
+  lanes.i = px ? from.i : nx_ - 1 - from.i;
+  lanes.j = py ? from.j : ny_ - 1 - from.j;
+  lanes.k = from.k;
+  lanes.resolution = resolution_;
+  lanes.columns_per_metre = per_metre_;
   static_assert(sizeof(Stride) == VoxelLanes::kBytes);
-  lanes.strides = &strides->width;
+  lanes.strides = &strides_[(px ? 1 : 0) + (py ? 2 : 0)].data()->width;
   lanes.levels = levels_.data();
   lanes.nx = nx_;
   lanes.ny = ny_;
@@ -248,17 +240,16 @@ bool VoxelGrid::cast_together(const Start& from, std::span<const Eigen::Vector3d
   lanes.max_range = max_range;
   std::array<LaneEnd, VoxelLanes::kMax> ends;
   cast_lanes(lanes, ends.data());
-  for (int at = 0; at < lanes.count; ++at) {
-    const std::size_t n = which[static_cast<std::size_t>(at)];
-    switch (ends[static_cast<std::size_t>(at)]) {
+  for (std::size_t n = 0; n < directions.size(); ++n) {
+    switch (ends[n]) {
       case LaneEnd::met:
-        ranges[n] = lanes.t[at];
+        ranges[n] = lanes.t[n];
         break;
       case LaneEnd::far:
         ranges[n] = kNoHit;
         break;
       case LaneEnd::outside:
-        ranges[n] = open_sides_ ? cast_beside(from, directions[n], max_range) : lanes.t[at];
+        ranges[n] = open_sides_ ? cast_beside(from, directions[n], max_range) : lanes.t[n];
         break;
     }
   }
@@ -268,7 +259,9 @@ bool VoxelGrid::cast_together(const Start& from, std::span<const Eigen::Vector3d
 void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directions, double max_range,
                      std::span<double> ranges) const {
   constexpr std::size_t kFew = 3;  // Not worth it.
-  if (directions.size() <= kFew || !has_voxel_lanes()) return cast_each(from, directions, max_range, ranges);
+  const bool in_grid = from.k >= 0 && inside(from.i, from.j);
+  if (directions.size() <= kFew || !in_grid || !has_voxel_lanes())
+    return cast_each(from, directions, max_range, ranges);
   for (std::size_t first = 0; first < directions.size(); first += VoxelLanes::kMax) {
     const std::size_t count = std::min<std::size_t>(VoxelLanes::kMax, directions.size() - first);
     const auto some = directions.subspan(first, count);

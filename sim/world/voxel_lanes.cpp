@@ -29,7 +29,10 @@ ADIT_AVX2 inline __m128i select(__m128i mask, __m128i yes, __m128i no) {
 
 /// Four rays.
 struct Group {
-  __m256d gx, gy, sx, sy, ax, ay, az, rise, t;
+  __m256d gx, gy;      ///< Start, in columns.
+  __m256d sx, sy;      ///< Columns per metre, >= 0.
+  __m256d ax, ay, az;  ///< Metres per column, metres per metre of height.
+  __m256d rise, t;
   __m128i i, j, k, up, shift, direction;
   __m128i cell;          ///< Index of that cell.
   __m128i active;        ///< All bits of a ray that is under way.
@@ -52,20 +55,29 @@ ADIT_AVX2 inline void enter_cells(Group& g, const VoxelLanes& lanes) {
   fetch(_mm_extract_epi32(g.cell, 3));
 }
 
+/// Where the divisor is 0, a border far away takes the place of the quotient.
+ADIT_AVX2 inline __m256d divide(__m256d a, __m256d b) {
+  const __m256d none = _mm256_cmp_pd(b, _mm256_setzero_pd(), _CMP_EQ_OQ);
+  return _mm256_blendv_pd(_mm256_div_pd(a, b), _mm256_set1_pd(VoxelLanes::kFar), none);
+}
+
 ADIT_AVX2 inline void load(Group& g, const VoxelLanes& lanes, int first) {
-  g.gx = _mm256_load_pd(lanes.gx + first);
-  g.gy = _mm256_load_pd(lanes.gy + first);
-  g.sx = _mm256_load_pd(lanes.sx + first);
-  g.sy = _mm256_load_pd(lanes.sy + first);
-  g.ax = _mm256_load_pd(lanes.ax + first);
-  g.ay = _mm256_load_pd(lanes.ay + first);
-  g.az = _mm256_load_pd(lanes.az + first);
+  const __m256d dx = _mm256_load_pd(lanes.dx + first), dy = _mm256_load_pd(lanes.dy + first),
+                dz = _mm256_load_pd(lanes.dz + first);
+  g.gx = _mm256_set1_pd(lanes.gx);
+  g.gy = _mm256_set1_pd(lanes.gy);
+  g.sx = _mm256_mul_pd(dx, _mm256_set1_pd(lanes.columns_per_metre));
+  g.sy = _mm256_mul_pd(dy, _mm256_set1_pd(lanes.columns_per_metre));
+  g.ax = divide(_mm256_set1_pd(lanes.resolution), dx);
+  g.ay = divide(_mm256_set1_pd(lanes.resolution), dy);
+  g.az = divide(_mm256_set1_pd(1.0), dz);
   g.rise = _mm256_div_pd(_mm256_set1_pd(1.0), g.az);
-  g.t = _mm256_load_pd(lanes.t + first);
-  g.i = _mm_load_si128(reinterpret_cast<const __m128i*>(lanes.i + first));
-  g.j = _mm_load_si128(reinterpret_cast<const __m128i*>(lanes.j + first));
-  g.k = _mm_load_si128(reinterpret_cast<const __m128i*>(lanes.k + first));
-  g.up = _mm_load_si128(reinterpret_cast<const __m128i*>(lanes.up + first));
+  g.t = _mm256_setzero_pd();
+  g.i = _mm_set1_epi32(lanes.i);
+  g.j = _mm_set1_epi32(lanes.j);
+  g.k = _mm_set1_epi32(lanes.k);
+  // Upwards: 1, downwards: 0.
+  g.up = _mm_add_epi32(narrow(_mm256_cmp_pd(dz, _mm256_setzero_pd(), _CMP_LT_OQ)), _mm_set1_epi32(1));
   g.shift = _mm_slli_epi32(g.up, 2);  // Layers above are in the high half of the byte.
   g.direction = _mm_sub_epi32(_mm_slli_epi32(g.up, 1), _mm_set1_epi32(1));
   const __m128i number = _mm_add_epi32(_mm_set1_epi32(first), _mm_setr_epi32(0, 1, 2, 3));

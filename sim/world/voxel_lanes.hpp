@@ -9,6 +9,7 @@ namespace adit::sim {
 struct VoxelLanes {
   static constexpr int kMax = 16;  ///< Rays at most.
   static constexpr int kWide = 4;  ///< Rays of a group; the last group's other rays hold copies of any ray.
+  static constexpr double kFar = 1e30;  ///< For an axis that a ray does not move along.
   int count{0};
 
   /// The grid. Strides: three bytes a cell, width and depth of its open rectangle and the layers that it
@@ -21,12 +22,14 @@ struct VoxelLanes {
   double z{};          ///< Height of the start, m.
   double max_range{};  ///< m
 
-  alignas(32) double gx[kMax], gy[kMax];            ///< Start, in columns.
-  alignas(32) double sx[kMax], sy[kMax];            ///< Columns per metre, >= 0.
-  alignas(32) double ax[kMax], ay[kMax], az[kMax];  ///< Metres per column, metres per metre of height.
-  alignas(32) double t[kMax];                       ///< Distance so far, then that of the end, m.
-  alignas(16) std::int32_t i[kMax], j[kMax], k[kMax];
-  alignas(16) std::int32_t up[kMax];  ///< 1 upwards, 0 downwards.
+  double gx{}, gy{};           ///< Start of all rays, in columns.
+  int i{}, j{}, k{};           ///< Its cell.
+  double resolution{};         ///< Edge of a column, m.
+  double columns_per_metre{};  ///< Its inverse.
+
+  /// Directions: along x and y without their sign, along z with it.
+  alignas(32) double dx[kMax], dy[kMax], dz[kMax];
+  alignas(32) double t[kMax];  ///< The distance of the end, m.
 };
 
 /// How a ray of VoxelLanes ended.
