@@ -147,8 +147,8 @@ std::vector<SweepPoint> SweepJob::trace() const {
   // Of their own: the faults leave the noise of the other beams alone.
   Random of_loss(derive_seed(seed, kLossSeed)), of_cover(derive_seed(seed, kCoverSeed));
   const double nearest = covered ? 0.0 : params.min_range;
-  std::vector<SweepPoint> points;
-  points.reserve(lidar->size());
+  std::vector<SweepPoint> points(columns * rings);
+  std::size_t returns = 0;
   std::vector<Eigen::Vector3d> directions(rings);
   std::vector<double> ranges(rings), before(rings, VoxelGrid::kNoHit);
   std::vector<Eigen::Vector2d> elevations = lidar->elevations();
@@ -204,18 +204,23 @@ std::vector<SweepPoint> SweepJob::trace() const {
                             k > 0 ? ranges[k - 1] : VoxelGrid::kNoHit};
       Receiver::Return got = receiver.measure(beam, sensor, directions[k]);
       if (lost) {
-        points.push_back({0, 0, 0, 0, lost_time(loss->time, t), ring, 0});
+        points[returns++] = {0, 0, 0, 0, lost_time(loss->time, t), ring, 0};
         continue;
       }
       if (covered) got = {of_cover.uniform(0.0, kCover), 255.0 * kBrightest};
       if (!(got.range >= nearest && got.range <= params.max_range)) continue;
       const double flat = got.range * elevations[k].x();
-      points.push_back(
-          {static_cast<float>(flat * azimuths[at].x()), static_cast<float>(flat * azimuths[at].y()),
-           static_cast<float>(got.range * elevations[k].y()), static_cast<float>(got.intensity), t, ring, 0});
+      points[returns++] = {static_cast<float>(flat * azimuths[at].x()),
+                           static_cast<float>(flat * azimuths[at].y()),
+                           static_cast<float>(got.range * elevations[k].y()),
+                           static_cast<float>(got.intensity),
+                           t,
+                           ring,
+                           0};
     }
     before.swap(ranges);
   }
+  points.resize(returns);
   return points;
 }
 
