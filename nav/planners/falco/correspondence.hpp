@@ -15,7 +15,9 @@ struct alignas(64) PathMask {
 
   void set(int bit) { words[bit >> 6] |= std::uint64_t{1} << (bit & 63); }
   bool test(int bit) const { return (words[bit >> 6] >> (bit & 63)) & 1u; }
+  /// Unrolled, so that a mask to which many are added stays in registers.
   PathMask& operator|=(const PathMask& other) {
+#pragma GCC unroll 8
     for (std::size_t i = 0; i < words.size(); ++i) words[i] |= other.words[i];
     return *this;
   }

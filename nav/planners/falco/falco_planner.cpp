@@ -257,36 +257,27 @@ void FalcoPlanner::block_paths(const Option& option) {
 
 void FalcoPlanner::cover(const Option& option, const Cells& cells, bool drop_dead,
                          std::array<PathMask, kHeadings>& masks) {
-  std::array<int, kHeadings> alive{};
-  int living = 0;
+  // Heading by heading, so that its mask stays in registers.
   for (int h = 0; h < heading_count_; ++h) {
     masks[h] = {};
-    if (approach_[h].possible && (drop_dead || !blocked_[h].dead())) alive[living++] = h;
-  }
-  int ring = -1;
-  for (const Occupied& cell : cells.list) {
-    if (cell.ring >= option.grid.rings() || living == 0) break;
-    if (cell.ring != ring) {
-      // Nearest rings first: headings that are blocked at their start drop out early.
+    if (!approach_[h].possible || (!drop_dead && blocked_[h].dead())) continue;
+    PathMask mask{};
+    const CorrespondenceGrid& grid =
+        approach_[h].reverse && option.back.rings() > 0 ? option.back : option.grid;
+    const int rings = std::min(option.grid.rings(), grid.rings());
+    int ring = -1;
+    for (const Occupied& cell : cells.list) {
+      if (cell.ring >= rings) break;
+      // Nearest rings first: a heading that is blocked at its start is done early.
+      if (drop_dead && cell.ring != ring && mask.dead()) break;
       ring = cell.ring;
-      for (int i = 0; i < living;) {
-        if (drop_dead && masks[alive[i]].dead())
-          alive[i] = alive[--living];
-        else
-          ++i;
-      }
-    }
-    for (int i = 0; i < living; ++i) {
-      const int h = alive[i];
-      const CorrespondenceGrid& grid =
-          approach_[h].reverse && option.back.rings() > 0 ? option.back : option.grid;
-      if (ring >= grid.rings()) continue;
       int angle = cell.angle - offset_[h];
       if (angle < 0) angle += kAngles;
       if (angle >= kAngles) angle -= kAngles;
       if ((angle < kAngles / 2 ? angle : kAngles - 1 - angle) > grid.half_angle(ring)) continue;
-      masks[h] |= grid.at(ring, angle);
+      mask |= grid.at(ring, angle);
     }
+    masks[h] = mask;
   }
 }
 
