@@ -8,6 +8,7 @@
 #include <cinttypes>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 
 namespace adit {
 namespace {
@@ -24,6 +25,12 @@ void read_text(const char* path, char (&text)[N]) {
 }
 
 }  // namespace
+
+Duration own_processor_time() {
+  timespec ran{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &ran);
+  return std::chrono::seconds(ran.tv_sec) + std::chrono::nanoseconds(ran.tv_nsec);
+}
 
 std::optional<ProcessorUse> processor_use(int thread_id) {
   char path[64], text[256];

@@ -22,6 +22,9 @@ class OnProcessor {
   virtual std::optional<ProcessorUse> processor_use() const = 0;
 };
 
+/// Time that the calling thread spent on a processor so far.
+Duration own_processor_time();
+
 /// Processor use of a thread of this process; safe to call from any thread. Nothing when the thread has ended
 /// or the system does not count it.
 std::optional<ProcessorUse> processor_use(int thread_id);

@@ -13,6 +13,7 @@
 #include "core/exec/fault.hpp"
 #include "core/exec/job_pool.hpp"
 #include "core/exec/loop_threads.hpp"
+#include "core/exec/processor_use.hpp"
 #include "core/time/random.hpp"
 
 namespace adit {
@@ -312,8 +313,14 @@ class VirtualStrand final : public Strand, public CanHang {
 
   void begin(const std::shared_ptr<VirtualJob>& job) {
     job->due = core_->now + std::max<std::int64_t>(0, job->spec.modelled.count());
-    job->job = std::make_shared<Job>(
-        [work = std::move(job->work), stop = job->stop.get_token()] { work(stop); }, job->due, core_->jobs++);
+    Task work = [work = std::move(job->work), stop = job->stop.get_token()] { work(stop); };
+    if (core_->params.on_use)
+      work = [work = std::move(work), on_use = core_->params.on_use, strand = name_, name = job->spec.name] {
+        const Duration before = own_processor_time();
+        work();
+        on_use(strand, name, own_processor_time() - before);
+      };
+    job->job = std::make_shared<Job>(std::move(work), job->due, core_->jobs++);
     job->work = nullptr;
     core_->add(
         this, machine_, job->due, [this, job] { finished(job); }, nullptr, 0, job->job);
@@ -448,8 +455,10 @@ void VirtualScheduler::State::run(std::uint32_t slot) {
   if (alive && period == 0) alive->store(false, std::memory_order_relaxed);
   running = strand;
   in_task = true;
+  const Duration before = params.on_use ? own_processor_time() : Duration{};
   try {
     task();
+    if (params.on_use && running) params.on_use(strand_name, "", own_processor_time() - before);
   } catch (const HangReleased&) {
     throw;  // The scheduler ends: strand and machine may be gone.
   } catch (...) {

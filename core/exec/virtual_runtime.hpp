@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -9,12 +10,16 @@
 
 namespace adit {
 
+/// Called with the processor time of a task, or of a computation by its name; a task has the name "".
+using OnUse = std::function<void(const std::string& strand, const std::string& job, Duration used)>;
+
 struct VirtualParams {
   std::uint64_t seed{1};  ///< Seed of the order in which machines run that have events at the same instant.
   int workers{2};         ///< Threads that do `compute` work, the calling one included, [1, 64].
   /// Largest number of tasks at one instant; beyond it run_until() throws.
   std::uint64_t max_per_instant{50'000'000};
   FailureHandler on_failure{report_on_stderr};
+  OnUse on_use{};  ///< Called on the thread that did the work. Empty: nothing is measured.
 };
 
 /// A seeded discrete-event scheduler for all machines of a rehearsal. While the caller of run_until waits, a

@@ -50,6 +50,7 @@ VirtualParams scheduler_params(const RunParams& params) {
   VirtualParams out;
   out.seed = params.seed;
   out.workers = params.workers;
+  out.on_use = params.on_use;
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/exec/virtual_runtime.hpp"
 #include "sim/driver/robot_driver.hpp"
 #include "sim/rehearsal/agent_factory.hpp"
 #include "sim/rehearsal/report.hpp"
@@ -41,6 +42,7 @@ struct RunParams {
   std::function<void(const wire::SampleEvent&)> on_frame{};
   /// Called at 50 Hz. Empty: never.
   std::function<void(Duration, const Simulation&)> on_truth{};
+  OnUse on_use{};  ///< See VirtualParams.
   /// Called for each station that is not dead, every Trail::kPeriod. Empty: never.
   std::function<void(Duration, const station::Station&)> on_station{};
 };

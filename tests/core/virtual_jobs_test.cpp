@@ -114,5 +114,18 @@ TEST_F(VirtualJobs, DrainingRunsThePostsThatAreDue) {
   EXPECT_EQ(ran.size(), 2u);
 }
 
+TEST(VirtualUse, TasksAndComputationsAreReportedByName) {
+  std::vector<std::string> used;
+  VirtualScheduler scheduler({.workers = 1, .on_use = [&](const auto& strand, const auto& job, Duration) {
+                                used.push_back(strand + " " + job);
+                              }});
+  const auto machine = scheduler.machine("r1", 0s);
+  const auto strand = machine->strand("s");
+  strand->compute(
+      {.name = "plan", .modelled = 10ms}, [] {}, [](const Result<void>&) {});
+  scheduler.run_until(1s);
+  EXPECT_THAT(used, ElementsAre("r1/s plan", "r1/s ")) << "the work, then its completion";
+}
+
 }  // namespace
 }  // namespace adit
