@@ -26,6 +26,11 @@ constexpr std::size_t kSamples = 8;     // Voxels of a frontier that are looked 
 constexpr std::array kAway{2.0, 4.0, 6.0, 8.0, 10.0};  // Of a viewpoint from its frontier, m.
 constexpr int kDirections = 16;
 constexpr std::size_t kMaxDeferred = 64;
+// Without an exploration, a scan is kept after so much of the way, m, or of a turn, rad, or so many scans.
+constexpr double kApart = 1.0, kTurnApart = 0.5;
+constexpr int kSkipped = 25;
+constexpr int kIdle =
+    10;  // Scans without a step after which the exploration is over: 2 s at the router's rate.
 // Least volume behind a frontier that is left to the end, m3: that of an opening which the robot fits through
 // with its margin, two voxels wide and 2.5 m high, to the depth of 1.5 m that counts.
 constexpr double kSmallGain = 3.75;
@@ -82,9 +87,22 @@ void Explorer::clear() {
   begin();
   map_.clear();
   ever_ = false;
+  kept_.reset();
+}
+
+bool Explorer::worth_keeping(const Pose3& body) const {
+  return !kept_ || skipped_ >= kSkipped || (body.position - kept_->position).norm() >= kApart ||
+         body.orientation.angularDistance(kept_->orientation) >= kTurnApart;
 }
 
 void Explorer::add_scan(const ScanPoints& scan, const Pose3& body) {
+  idle_ = std::min(idle_ + 1, kIdle);
+  if (idle_ == kIdle && !worth_keeping(body)) {
+    ++skipped_;
+    return;
+  }
+  kept_ = body;
+  skipped_ = 0;
   scan.each_part(sensor_,
                  [&](auto points, const Eigen::Vector3d& origin) { map_.add_scan(points, origin, body); });
   ++scans_;
@@ -287,6 +305,7 @@ void Explorer::leave_small(std::vector<Frontier>& frontiers) const {
 }
 
 ExploreStep Explorer::step(RouteGround& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked) {
+  idle_ = 0;
   if (goal_) end_goal(place, stamp_s, blocked);
   Frontiers frontiers = find_frontiers(map_, kSmallGain);
   if (ground.weighs()) weigh(ground, place.z(), frontiers.list);

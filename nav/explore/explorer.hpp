@@ -39,7 +39,9 @@ class Explorer {
  public:
   explicit Explorer(const Platform& platform);
 
-  /// Takes a scan. `body`: base_link, on the ground.
+  /// Takes a scan. `body`: base_link, on the ground. Without an exploration, one a metre of the way is
+  /// kept, which shows about as much: an exploration that begins after a drive knows what the drive has
+  /// shown.
   void add_scan(const ScanPoints& scan, const Pose3& body);
   /// Begins an exploration: what was seen stays seen, and places that were blocked may be tried again.
   void begin();
@@ -69,6 +71,8 @@ class Explorer {
     bool shows;   ///< It shows the frontier; else no known place does, and this is the nearest one.
   };
 
+  /// Whether a scan from here shows enough to be kept without an exploration.
+  bool worth_keeping(const Pose3& body) const;
   bool in_view(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& target) const;
   bool satisfied(const Goal& goal) const;
   void defer(const Eigen::Vector3d& place, double stamp_s);
@@ -98,8 +102,11 @@ class Explorer {
   CoverageMap map_{};
   std::optional<Goal> goal_{};
   std::vector<Deferred> deferred_{};
-  int scans_{0};      ///< Since the robot arrived at the goal, or since nothing was left.
-  bool ever_{false};  ///< A plan had a goal.
+  std::optional<Pose3> kept_{};  ///< Where the newest scan that the map has was taken.
+  int skipped_{0};               ///< Scans since then.
+  int idle_{0};                  ///< Scans since the last step; counts up to kIdle.
+  int scans_{0};                 ///< Since the robot arrived at the goal, or since nothing was left.
+  bool ever_{false};             ///< A plan had a goal.
   std::optional<double> nothing_since_{};
   std::optional<Eigen::Vector3d> before_{};  ///< The robot's place at the last step.
   double before_s_{0};
