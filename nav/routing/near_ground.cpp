@@ -7,7 +7,8 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kHole = kHoleHeight * kObstacleHeightUnit;  // m
+// m: lower things may be the steps of stairs or of a ramp, whose heights TileBuilder compares.
+constexpr float kTall = 0.36f;
 
 }  // namespace
 
@@ -35,10 +36,12 @@ void NearGround::take(const LocalMap& map, const Pose3& located) {
     Sums& sums = sums_[v * kSide + u];
     if (cell.peer || cell.kind == CellClass::mover) {
       sums.passing = true;
-    } else if (cell.impassable()) {
+    } else if ((stands && cell.high - cell.low <= kTall) || cell.kind == CellClass::drop) {
+      sums.undecided = true;
+    } else if (stands) {
       sums.x += place.x();
       sums.y += place.y();
-      sums.height = std::max(sums.height, stands ? cell.high - cell.low : kHole);
+      sums.height = std::max(sums.height, cell.high - cell.low);
       ++sums.blocked_count;
     }
     sums.fresh = sums.fresh || cell.fresh;
@@ -54,7 +57,9 @@ NearGround::Cell NearGround::cell_of(const Sums& sums) {
     cell.low = sums.measured / sums.measured_count;
   else if (sums.inherited_count > 0)
     cell.low = sums.inherited / sums.inherited_count;
+  cell.measured = sums.measured_count > 0;
   cell.fresh = sums.fresh && sums.measured_count > 0;
+  if (sums.undecided && sums.blocked_count == 0) return {};
   if (sums.passing) {
     cell.what = Cell::What::passing;
   } else if (sums.blocked_count > 0) {

@@ -9,8 +9,10 @@
 
 namespace adit::nav {
 
-/// The ground near the robot as its local map classified it, on the cells of a SurfaceMap. Where it knows a
-/// cell, its word is final: the returns of one direction of a single scan show less.
+/// The ground near the robot as its local map classified it, on the cells of a SurfaceMap. It decides about
+/// walls and other tall things, about what passes, and about the heights of the ground, which the returns of
+/// one direction of a single scan show less well. Low things, edges and drops are left to the scan:
+/// TileBuilder makes steps of heights.
 class NearGround {
  public:
   /// One cell of the surface map, made of those of the local map whose centres lie in it: their worst class
@@ -18,11 +20,12 @@ class NearGround {
   struct Cell {
     enum class What : std::uint8_t {
       unknown,  ///< Neither ground nor an obstacle was seen.
-      ground,   ///< Measured, and passable.
-      blocked,  ///< The body cannot cross it.
+      ground,   ///< Measured.
+      blocked,  ///< By something tall.
       passing,  ///< Another robot, or what moves: no evidence for or against anything.
     };
     What what{};
+    bool measured{};              ///< `low` was measured.
     bool fresh{};                 ///< The newest scan measured the ground.
     float low{LocalCell::kNone};  ///< Height of the ground, measured or inherited, m; NaN: none.
     float x{}, y{};               ///< Place of what blocks, m.
@@ -33,7 +36,7 @@ class NearGround {
   /// Takes the cells of a local map. `located`: base_link at its scan in the frame of the surface map.
   void take(const LocalMap& map, const Pose3& located);
   void clear() { side_ = 0; }
-  /// The cell of the surface map with these coordinates; null where the local map knows no ground.
+  /// The cell of the surface map with these coordinates; null where the local map decides nothing.
   const Cell* find(int ix, int iy) const {
     const auto u = static_cast<unsigned>(ix - x0_), v = static_cast<unsigned>(iy - y0_);
     if (u >= side_ || v >= side_) return nullptr;
@@ -51,7 +54,7 @@ class NearGround {
   struct Sums {
     float measured{}, inherited{}, x{}, y{}, height{};
     std::uint8_t measured_count{}, inherited_count{}, blocked_count{};
-    bool fresh{}, passing{};
+    bool fresh{}, passing{}, undecided{};
   };
   static Cell cell_of(const Sums& sums);
 

@@ -235,8 +235,8 @@ void ScanProfile::write_free(int direction, std::span<const Piece> pieces, Surfa
       bool there = p.to - r < kRouteCellF;  // At a return, or at the foot of an obstacle.
       if (const NearGround::Cell* cell = near_->find(cx + dx, cy + dy)) {
         if (cell->what > NearGround::Cell::What::ground) continue;
-        if (!std::isnan(cell->low)) z = cell->low;
-        there = false;
+        if (cell->measured || std::abs(z - cell->low) > step_) z = cell->low;
+        there = there && !cell->measured;
       }
       const float ray = from_.sensor.z() + (p.ray_z - from_.sensor.z()) * r / std::max(p.to, r);
       map.see_free(cx + dx, cy + dy, z, std::max(0.0f, ray - z),

@@ -18,7 +18,7 @@ namespace adit::nav {
 /// clearance height are ignored, and a ray that passed below the expected ground marks a hole. The sectors
 /// follow M. Himmelsbach et al., *Fast segmentation of 3D point clouds for ground vehicles*, 2010. A lidar
 /// with one level ring sees no ground; then the ground before an obstacle is taken to be as high as under the
-/// robot. Near the robot the local map decides what blocks and how high the ground is, and rays only free.
+/// robot. Near the robot a local map, if there is one, decides about what NearGround says.
 class ScanProfile {
  public:
   ScanProfile(const Platform& platform, const RouteParams& params);
