@@ -70,7 +70,7 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
       behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, frames_, context.instances++), behaviour_, command_outputs()),
       map_commands_(commands_,
-                    {[this](const auto&... goal) { router_.check_goal(goal...); },
+                    {[this](const auto&... goal) { check_goal(goal...); },
                      [this](const auto&... goal) { router_.find_route(goal...); }, [this] { return now(); }}),
       notices_(params.name, *context.notifier, log(), [this] { return commands_.authority().holder_name(); }),
       safeguards_(params.safeguards, params.name, frames_.T_map_start(),
@@ -257,6 +257,14 @@ void Agent::CommandComponent::keep() {
   context_.keeper->save(
       {commands_.stored(), behaviour_.stored(), params_.boot, safeguards_.stored(), localiser_.stored(), {}},
       [this] { return commands_.stored_answers(); }, commands_.accepted());
+}
+
+void Agent::CommandComponent::check_goal(const Eigen::Vector3d& goal, bool replace,
+                                         const RouterClient::Done<GoalReport>& done) {
+  // Where the robot does not know its place, the map around it says nothing about the goal.
+  const Reason unknown = localiser_.unknown_because(now());
+  if (unknown != Reason::none) return done({unknown, "the goal is not judged"});
+  router_.check_goal(goal, replace, done);
 }
 
 void Agent::CommandComponent::watch_driver() {

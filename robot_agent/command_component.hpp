@@ -147,6 +147,8 @@ class Agent::CommandComponent : public Component {
   void watch_topics(Time at);
   /// Keeps the robot in hold while it gives way to another one of its name.
   void watch_namesakes(Time at);
+  /// RouterClient::check_goal(), if the robot knows its place.
+  void check_goal(const Eigen::Vector3d& goal, bool replace, const RouterClient::Done<GoalReport>& done);
   /// Takes a scan with its poses.
   void located(std::shared_ptr<Scan> scan, const LidarScan& lidar);
   /// Offers a scan to the map, in the odometry frame.

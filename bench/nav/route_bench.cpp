@@ -42,7 +42,8 @@ bool run(unsigned seed) {
     const auto scan = drive.loop.world.scan(drive.loop.truth, 0.5, drive.loop.rings, drive.loop.columns, 0.01,
                                             drive.loop.random);
     const double t0 = bench::thread_cpu_ms();
-    drive.planner.add_scan(scan, Pose3::level(at, 0.0), drive.loop.time);
+    drive.planner.add_scan(scan, Pose3::level(at, 0.0), drive.loop.time, true,
+                           drive.loop.local_navigation.map().get());
     const double t1 = bench::thread_cpu_ms();
     const Route route = drive.planner.plan({at.x, at.y, 0}, {kGoal, kGoal, std::nan("")});
     const double t2 = bench::thread_cpu_ms();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -25,7 +26,7 @@ struct LocalCell {
   std::uint8_t cost{};   ///< 1/254 of the platform's limit; kImpassable: the body cannot cross.
   bool measured : 1 {};  ///< `low` was measured.
   bool fresh : 1 {};     ///< `low` was measured by the newest scan.
-  bool peer : 1 {};      ///< Within the disc of another robot of the team.
+  bool peer : 1 {};      ///< Where another robot of the team may be.
   std::int8_t aside_x{}, aside_y{};  ///< Surface of the obstacle from the cell's centre, kAsideUnit.
 
   bool impassable() const { return cost == kImpassable; }
@@ -83,10 +84,13 @@ class LocalMap {
   /// Calls `visit(ix, iy, cell)` for each cell whose centre is at most `reach` (m) from the robot.
   template <class Visit>
   void visit(float reach, Visit&& visit) const {
+    if (!is_placed()) return;
     const auto bx = static_cast<float>(scan_.body.position.x()),
                by = static_cast<float>(scan_.body.position.y());
-    for (int iy = y0_; iy < y0_ + kSide; ++iy)
-      for (int ix = x0_; ix < x0_ + kSide; ++ix)
+    const int cells = static_cast<int>(std::min(reach / kCell, static_cast<float>(kSide))) + 1;
+    const int x = cell(bx), y = cell(by);
+    for (int iy = std::max(y0_, y - cells); iy < std::min(y0_ + kSide, y + cells + 1); ++iy)
+      for (int ix = std::max(x0_, x - cells); ix < std::min(x0_ + kSide, x + cells + 1); ++ix)
         if (const float dx = centre(ix) - bx, dy = centre(iy) - by; dx * dx + dy * dy <= reach * reach)
           visit(ix, iy, at(ix, iy));
   }

@@ -13,6 +13,8 @@ namespace {
 constexpr float kBesideMover = 0.35f;
 
 constexpr float kLargestRobot = 2.0f;  ///< Radius, m: what other robots claim is bounded.
+/// Errors of the poses of both robots, and the trace of one that drives until it is seen to be free, m.
+constexpr float kPeerErrors = 0.3f;
 
 /// Height of the terrain map's datum above the odometry frame, m. The map is level where the odometry is
 /// tilted about the robot.
@@ -202,7 +204,7 @@ void LocalMapBuilder::mark(const LocalMapOthers& others, LocalMap& map) {
         place.kind = CellClass::mover;
   for (const Eigen::Vector3f& peer : others.peers)
     if (peer.z() > 0.0f)
-      visit_disc(map, peer.head<2>(), std::min(peer.z(), kLargestRobot),
+      visit_disc(map, peer.head<2>(), std::min(peer.z(), kLargestRobot) + kPeerErrors,
                  [](LocalCell& cell) { cell.peer = true; });
 }
 

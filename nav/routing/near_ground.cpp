@@ -12,7 +12,8 @@ constexpr float kTall = 0.36f;
 
 }  // namespace
 
-NearGround::NearGround() : cells_(std::size_t{kSide} * kSide), sums_(std::size_t{kSide} * kSide) {}
+NearGround::NearGround(bool climbs)
+    : climbs_(climbs), cells_(std::size_t{kSide} * kSide), sums_(std::size_t{kSide} * kSide) {}
 
 void NearGround::take(const LocalMap& map, const Pose3& located) {
   std::ranges::fill(sums_, Sums{});
@@ -49,6 +50,24 @@ void NearGround::take(const LocalMap& map, const Pose3& located) {
     ++(cell.measured ? sums.measured_count : sums.inherited_count);
   });
   std::ranges::transform(sums_, cells_.begin(), cell_of);
+  if (climbs_) forget_far_heights();
+}
+
+// Behind the face of an obstacle the returns of one direction rise as a ramp does. Elsewhere the height of
+// the ground around says nothing about the next tread of stairs.
+void NearGround::forget_far_heights() {
+  const auto is_blocked = [this](unsigned u, unsigned v) {
+    return u < kSide && v < kSide && cells_[v * kSide + u].what == Cell::What::blocked;
+  };
+  for (unsigned v = 0; v < kSide; ++v)
+    for (unsigned u = 0; u < kSide; ++u) {
+      Cell& cell = cells_[v * kSide + u];
+      if (cell.what != Cell::What::unknown || std::isnan(cell.low)) continue;
+      bool beside = false;
+      for (const unsigned dv : {~0u, 0u, 1u})
+        for (const unsigned du : {~0u, 0u, 1u}) beside = beside || is_blocked(u + du, v + dv);
+      if (!beside) cell.low = LocalCell::kNone;
+    }
 }
 
 NearGround::Cell NearGround::cell_of(const Sums& sums) {

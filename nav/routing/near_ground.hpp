@@ -25,14 +25,17 @@ class NearGround {
       passing,  ///< Another robot, or what moves: no evidence for or against anything.
     };
     What what{};
-    bool measured{};              ///< `low` was measured.
-    bool fresh{};                 ///< The newest scan measured the ground.
-    float low{LocalCell::kNone};  ///< Height of the ground, measured or inherited, m; NaN: none.
-    float x{}, y{};               ///< Place of what blocks, m.
-    float height{};               ///< Of it above the ground, m.
+    bool measured{};  ///< `low` was measured.
+    bool fresh{};     ///< The newest scan measured the ground.
+    /// Height of the ground, measured or inherited, m; NaN: none. For a body that climbs stairs inherited
+    /// only beside what blocks.
+    float low{LocalCell::kNone};
+    float x{}, y{};  ///< Place of what blocks, m.
+    float height{};  ///< Of it above the ground, m.
   };
 
-  NearGround();
+  /// `climbs`: the body climbs stairs, so ground that was not measured may be the next tread.
+  explicit NearGround(bool climbs);
   /// Takes the cells of a local map. `located`: base_link at its scan in the frame of the surface map.
   void take(const LocalMap& map, const Pose3& located);
   void clear() { side_ = 0; }
@@ -57,7 +60,9 @@ class NearGround {
     bool fresh{}, passing{}, undecided{};
   };
   static Cell cell_of(const Sums& sums);
+  void forget_far_heights();
 
+  bool climbs_;
   unsigned side_{0};  ///< kSide, or 0: no map.
   int x0_{}, y0_{};
   std::vector<Cell> cells_{};

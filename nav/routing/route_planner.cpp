@@ -22,6 +22,7 @@ RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
       limits_(Traversability::of(platform)),
       level_(ScanProfile::most_wrong(platform)),
       map_(params, ScanProfile::most_wrong(platform)),
+      near_(platform.stairs),
       profile_(platform, params),
       builder_(platform, params),
       line_(map_, builder_),

@@ -96,7 +96,7 @@ class RoutePlanner {
   Traversability limits_;
   double level_;  // m: heights at one place that differ by at most this belong to one ground.
   SurfaceMap map_;
-  NearGround near_{};
+  NearGround near_;
   ScanProfile profile_;
   GroundRegistration registration_{};
   TileBuilder builder_;

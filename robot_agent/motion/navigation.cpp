@@ -306,10 +306,20 @@ const nav::RouteStep* Navigation::step_on(Time now) const {
   return is_current(step_generation_, now) ? &*step_ : nullptr;
 }
 
+// One before a jump of the own odometry lies elsewhere in the map of the routes.
+std::shared_ptr<const nav::LocalMap> Navigation::near_map(const Scan& scan, Time now) const {
+  constexpr double kOldest = 0.5;  // s
+  if (!local_map_) return nullptr;
+  const nav::LocalMapScan& at = local_map_->scan();
+  const bool same = at.odom_epoch == frames_.odom_epoch() && at.jumps == scan.jumps;
+  return same && seconds(now.time_since_epoch()) - at.stamp_s < kOldest ? local_map_ : nullptr;
+}
+
 void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now, std::vector<TeamRobot> team) {
   if (!router_ || routing_) return;
   auto job = std::make_shared<RouteJob>();
   job->scan = scan;
+  job->near = near_map(*scan, now);
   job->team = std::move(team);
   job->place = frames_.T_odom_base().position;
   if (const auto* go = std::get_if<GoTo>(&motion_)) {

@@ -102,6 +102,8 @@ class Navigation : public Component, public NavigationInput {
   /// The next step of the route; null if there is none.
   const nav::RouteStep* step_on(Time now) const;
   void ask_route(const std::shared_ptr<const Scan>& scan, Time now, std::vector<TeamRobot> team);
+  /// The local map if the map of the routes may take it in with a scan; else null.
+  std::shared_ptr<const nav::LocalMap> near_map(const Scan& scan, Time now) const;
   void routed(const RouteJob& job, const Result<nav::RouteStep>& step);
   Twist2 along_plan(Time now);
   void watch_warning(nav::CollisionMonitor::Cause cause, Time now);

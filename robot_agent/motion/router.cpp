@@ -120,7 +120,8 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) {
           const auto scan = without_team(job->scan, job->team);
-          maps->planner.add_scan(scan->measured(), scan->located, stamp, job->goal.has_value());
+          maps->planner.add_scan(scan->measured(), scan->located, stamp, job->goal.has_value(),
+                                 job->near.get());
           maps->explorer.add_scan(scan->measured(), scan->located);
           if (watch) watch(*job, maps->planner);
         }

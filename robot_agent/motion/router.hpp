@@ -36,6 +36,7 @@ struct RouteContext {
 /// route. Odometry frame, m.
 struct RouteJob : RouteContext {
   std::shared_ptr<const Scan> scan{};
+  std::shared_ptr<const nav::LocalMap> near{};  ///< Of about that time; null: the planner is late.
   std::optional<Eigen::Vector3d> goal{};  ///< Unset: the scan enters the map, and no route is requested.
   Eigen::Vector3d place{0, 0, 0};         ///< Position of the body.
   bool pass{};                            ///< See nav::RouteRequest.

@@ -22,7 +22,7 @@ struct RouteDrive {
     const Pose2 at = loop.odometry();
     planner.add_scan(loop.world.scan(loop.truth, loop.platform.lidar_height, loop.rings, loop.columns,
                                      loop.noise, loop.random),
-                     Pose3::level(at, 0.0), loop.time);
+                     Pose3::level(at, 0.0), loop.time, true, loop.local_navigation.map().get());
     next(goal);
   }
   void next(const Eigen::Vector2d& goal) {

@@ -150,7 +150,7 @@ TEST(RouteScans, ARobotBesideIsNoObstacle) {
   BoxWorld world = walls_at(3.0);
   world.boxes.push_back({1.5, 2.1, -0.25, 0.25, 0, 0.6});
   Looking robot{wheeled(), 0.02};
-  robot.peers = {{1.8f, 0.0f, 0.6f}};
+  robot.peers = {{2.0f, 0.1f, 0.39f}};  // It claims a place 0.22 m beside its true one.
   robot.look(world, 20);
   EXPECT_FALSE(robot.blocked(1.5, 0.0));
   EXPECT_TRUE(robot.blocked(1.5, 3.0));

@@ -119,8 +119,11 @@ TEST(Goals, AnUnseenGoalHasABudgetAndIsJudgedOnceItIsSeen) {
   EXPECT_NEAR(run.driven(0s, 12s), 1.9, 0.4);
   EXPECT_EQ(run.driven(10s, 12s), 0.0);
   EXPECT_GT(run.driven(12s, 20s), 1.0) << "mode waypoint renews the budget";
-  // Whether it was seen on the way or only at its end, a block stands at the goal.
-  EXPECT_TRUE(run.notified("r1", "unreachable") || run.report.commands.reasons.contains("goal_occupied"));
+  // Whether it was seen on the way or only at its end, a block stands at the goal. From 6 m away, where the
+  // heading's errors move the rays past its corners, it looks like a gap.
+  const auto& reasons = run.report.commands.reasons;
+  EXPECT_TRUE(run.notified("r1", "unreachable") || reasons.contains("goal_occupied") ||
+              reasons.contains("goal_too_narrow"));
   EXPECT_EQ(run.driven(36s, 40s), 0.0);
 }
 
