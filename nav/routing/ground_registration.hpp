@@ -21,6 +21,10 @@ class GroundRegistration {
   Pose3 apply(std::span<const Eigen::Vector3f> points, const Pose3& body, const SurfaceMap& map);
   /// The same correction of another pose of about that time.
   Pose3 correct(const Pose3& body) const;
+  /// Height of the scan's ground under the reported pose above the map's ground, m.
+  float height() const { return height_; }
+  /// The map was raised by so much, m.
+  void map_raised(float by) { height_ -= by; }
   /// Forgets the correction.
   void clear() {
     gradient_.setZero();
@@ -30,7 +34,7 @@ class GroundRegistration {
  private:
   /// Rise of level ground per metre under the reported attitude, map frame.
   Eigen::Vector2f gradient_{0, 0};
-  float height_{0};  ///< Height of the scan's ground under the reported pose above the map's ground, m.
+  float height_{0};
   std::vector<Eigen::Vector3f> samples_{};
 };
 

@@ -38,6 +38,7 @@ void RoutePlanner::add_scan(const ScanPoints& scan, const Pose3& body, double st
     near_.take(*near, platform_.stairs ? located : registration_.correct(located));
   }
   profile_.add(scan, corrected, near_, map_);
+  follow_height();
   map_.expire(stamp_s);
   for (int i = 0; search && i < params_.rebuilds; ++i) {
     const int index = map_.next_dirty();
@@ -45,6 +46,15 @@ void RoutePlanner::add_scan(const ScanPoints& scan, const Pose3& body, double st
     builder_.build(map_, index);
     builder_.connect(map_, index);
   }
+}
+
+// The registration leaves the heights where they were, and has limits.
+void RoutePlanner::follow_height() {
+  constexpr float kApart = 0.1f;  // m: well within the limit of the registration, which is 0.25 m.
+  const float height = registration_.height();
+  if (std::abs(height) < kApart) return;
+  map_.raise(height);
+  registration_.map_raised(height);
 }
 
 void RoutePlanner::set_ground(const Eigen::Vector3d& place) {

@@ -85,6 +85,8 @@ class RoutePlanner {
   /// Whether a route leads from behind a staircase to the goal; also true where the map shows no ground
   /// there.
   bool leads_on(const Flight& flight, const std::optional<RouteEnd>& goal, const Eigen::Vector3d& to);
+  /// Moves the map to the heights of the odometry, which drifts.
+  void follow_height();
   bool is_blocked_between(const Eigen::Vector3d& place, int ix, int iy) const;
   std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach);
   double goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;

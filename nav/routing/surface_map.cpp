@@ -58,6 +58,21 @@ void SurfaceMap::clear() {
   last_ = -1;
 }
 
+void SurfaceMap::raise(float by) {
+  for (int i = 0; i < size(); ++i) {
+    Tile& t = tile(i);
+    if (!t.used) continue;
+    t.z += by;
+    for (GroundCell& cell : t.cells)
+      if (cell.known) cell.z += by;
+    for (int n = 0; n < t.node_count; ++n) t.nodes[n].z += by;
+    if (!areas_.empty()) mark_dirty(i);
+  }
+  for (BlockedPlace& place : places_) place.z += double{by};
+  for (TeamPlace& robot : team_) robot.place.z() += double{by};
+  for (Staircase& stairs : stairs_) stairs.foot.z() += double{by};
+}
+
 void SurfaceMap::set_areas(const AreaSet& areas) {
   const AreaSet before = std::exchange(areas_, areas);  // So that a copy of `areas` is quickly the same.
   if (before == areas_) return;

@@ -133,6 +133,8 @@ class SurfaceMap {
   const Extent& extent() const { return extent_; }
   /// Whether a place has a tile or is at most margin_tiles() from one, or up to 7 more.
   bool near_seen(int tx, int ty) const { return blocks_.near(tx, ty); }
+  /// Raises everything by so much, m: the odometry drifted.
+  void raise(float by);
   /// Forgets everything.
   void clear();
 

@@ -21,21 +21,34 @@ struct Box {
 struct BoxWorld {
   std::vector<Box> boxes{};
   double ceiling{2.5};
-  double lowest{-15};  ///< Elevation of the lidar's lowest ring, degrees.
+  double lowest{-15};        ///< Elevation of the lidar's lowest ring, degrees.
+  std::vector<Box> panes{};  ///< Of glass: they return only rays within 8 degrees of the normal of a face.
+  std::vector<Box> water{};  ///< Still, on the floor: a mirror, where z0 and z1 do not matter.
 
-  /// Distance along `direction` (unit length) to what is hit first, m; 100 when nothing is.
+  /// Distance along `direction` (unit length) to what returns the ray, m, behind a mirror as the lidar sees
+  /// it; 100 when nothing does.
   double cast(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const {
     double nearest = 100.0;
     if (direction.z() < 0) nearest = std::min(nearest, -from.z() / direction.z());
     if (direction.z() > 0) nearest = std::min(nearest, (ceiling - from.z()) / direction.z());
     const Eigen::Vector3d inverse = direction.cwiseInverse();
-    for (const Box& b : boxes) {
+    const auto meet = [&](const Box& b) {
       const Eigen::Vector3d low(b.x0, b.y0, b.z0), high(b.x1, b.y1, b.z1);
       const Eigen::Vector3d t0 = (low - from).cwiseProduct(inverse), t1 = (high - from).cwiseProduct(inverse);
       const double enter = t0.cwiseMin(t1).maxCoeff(), leave = t0.cwiseMax(t1).minCoeff();
       if (enter > 0 && enter <= leave) nearest = std::min(nearest, enter);
-    }
-    return nearest;
+    };
+    for (const Box& b : boxes) meet(b);
+    const double normal = std::cos(8.0 * M_PI / 180.0);
+    if (std::max(std::abs(direction.x()), std::abs(direction.y())) > normal)
+      for (const Box& b : panes) meet(b);
+    const Eigen::Vector3d at = from + nearest * direction;
+    const auto has = [&](const Box& b) {
+      return at.x() > b.x0 && at.x() < b.x1 && at.y() > b.y0 && at.y() < b.y1;
+    };
+    if (direction.z() < 0 && at.z() < 1e-6 && std::any_of(water.begin(), water.end(), has))
+      nearest += cast({at.x(), at.y(), 0.0}, {direction.x(), direction.y(), -direction.z()});
+    return std::min(nearest, 100.0);
   }
 
   /// A scan of `rings` x `columns` from a lidar at `height` above `body`: points in base_link.

@@ -2,6 +2,7 @@
 // What the map of the routes shows near the robot, where the local map decides.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 
 #include "nav/local_navigation.hpp"
@@ -144,6 +145,56 @@ TEST(RouteScans, NearWallsLieWhereTheOwnOdometrySawThem) {
   const auto seen = [&](double x, double y) { return robot.T_lasting_odom * Eigen::Vector3d(x, y, 0); };
   EXPECT_TRUE(robot.planner.line(seen(-3, 0), seen(3, 0)).passable);
   EXPECT_FALSE(robot.planner.line(seen(0, 0), seen(0, 2.5)).passable);
+}
+
+// The odometry's height by 1 % of the way.
+TEST(RouteScans, AHeightThatDriftsByAMetreMakesNoSecondFloor) {
+  for (const Platform& platform : {wheeled(), tracked()}) {
+    SCOPED_TRACE(platform.name);
+    const BoxWorld hall = walls_at(3.0, 8.0);
+    std::array<int, 2> tiles{};
+    for (const bool drifts : {false, true}) {
+      Looking robot{platform, 0.02};
+      double& z = robot.T_lasting_odom.position.z();
+      for (int lap = 0; lap < 10; ++lap)
+        for (double x = -5.0; x <= 5.0; x += 0.5) {
+          robot.pose = {lap % 2 == 0 ? x : -x, 0, lap % 2 == 0 ? 0 : M_PI};
+          z += drifts ? 0.005 : 0.0;
+          robot.look(hall, 2);
+        }
+      tiles[drifts] = robot.planner.map().used();
+      EXPECT_TRUE(robot.planner.line({-5, 0, z}, {5, 0, z}).passable);
+      EXPECT_FALSE(robot.planner.plan({0, 0, z}, {0, 4, z}).found());
+    }
+    EXPECT_LE(tiles[1], tiles[0] + 3);
+  }
+}
+
+// Still water shows the walls behind it below the ground. How deep it is, no lidar sees.
+TEST(RouteScans, WhatStillWaterMirrorsOpensNoWall) {
+  BoxWorld hall = walls_at(3.0, 8.0);
+  hall.water = {{1.5, 3.5, -3.0, 0.5}};
+  Looking robot{wheeled(), 0.02};
+  for (double x = -2.0; x <= 0.5; x += 0.1) {
+    robot.pose = {x, -1.0, 0};
+    robot.look(hall, 2);
+  }
+  EXPECT_TRUE(robot.planner.plan({0.5, 1.5, 0}, {6, 1.5, 0}).found());
+  EXPECT_FALSE(robot.planner.plan({0.5, -1, 0}, {6, -4, 0}).found());
+}
+
+TEST(RouteScans, AGlassPaneBlocksWhereItReturnsRays) {
+  BoxWorld hall = walls_at(3.0, 8.0);
+  hall.panes = {{2.0, 2.02, -3.0, 1.5}};
+  Looking robot{wheeled(), 0.02};
+  robot.look(hall, 20);
+  EXPECT_TRUE(robot.blocked(2.0, 0.0));
+  robot.pose = {1.2, 0, 0};
+  robot.look(hall, 20);
+  EXPECT_TRUE(robot.blocked(2.0, 0.0));
+  EXPECT_FALSE(robot.planner.line({1.2, 0, 0}, {4, 0, 0}).passable);
+  const Route round = robot.planner.plan({1.2, 0, 0}, {4, 0, 0});
+  EXPECT_TRUE(round.found());
 }
 
 TEST(RouteScans, ARobotBesideIsNoObstacle) {
