@@ -7,14 +7,24 @@
 #include "nav/explore/route_ground.hpp"
 
 namespace adit::agent {
+
+/// Duration of a kind of job in rehearsal: the median of bench_router_jobs, for a computer that is three
+/// times as slow as the one of the bench.
+struct JobTime {
+  Duration base, per_1000_tiles;
+  Duration at(int tiles) const { return base + per_1000_tiles * tiles / 1000; }
+};
+
 namespace {
 
 constexpr Duration kMinPeriod = 200ms;       // Between two scans that enter the map.
 constexpr Duration kMinPeriodStanding = 1s;  // The same while the robot is stationary and has no goal.
-constexpr Duration kModelled = 20ms;         // Duration of a job in rehearsal.
 constexpr double kMoved = 0.1;               // m
 constexpr double kJudged = 3.0;              // m: a goal this near is in sight
 constexpr double kRefusedFor = 3.0;  // s: the body cannot stand at a goal for so long before the robot stops
+
+constexpr JobTime kStepTime{16ms, 1100us}, kCheckTime{600us, 1600us}, kExploreTime{5ms, 7ms},
+    kClearTime{6ms, 0ms}, kQueryTime{100us, 1700us};
 
 }  // namespace
 
@@ -71,10 +81,10 @@ Router::Router(const Platform& platform, Executor& strand, Log log, RouteService
       watch_(std::move(watch)) {}
 
 template <class Query, class Answer, class Work>
-void Router::serve(Service<Query, Answer>& service, const char* name, Work work) {
-  offer(service, [this, name, work](const Query& query, const Reply<Answer>& reply) {
+void Router::serve(Service<Query, Answer>& service, const char* name, const JobTime& time, Work work) {
+  offer(service, [this, name, &time, work](const Query& query, const Reply<Answer>& reply) {
     compute(
-        {.name = name, .modelled = kModelled, .lane = "maps"},
+        {.name = name, .modelled = time.at(tiles_), .lane = "maps"},
         [query, work, maps = maps_] {
           maps->enter(query);
           return work(*maps, query);
@@ -85,19 +95,19 @@ void Router::serve(Service<Query, Answer>& service, const char* name, Work work)
 
 Result<void> Router::on_start() {
   offer(services_.step, [this](const auto& job, const auto& reply) { step(job, reply); });
-  serve(services_.check, "goal check", [](Maps& maps, const GoalQuery& query) {
+  serve(services_.check, "goal check", kCheckTime, [](Maps& maps, const GoalQuery& query) {
     return maps.goals.check(maps.planner, query.from, query.to, query.replace);
   });
-  serve(services_.explore, "exploration", [](Maps& maps, const ExploreQuery& query) {
+  serve(services_.explore, "exploration", kExploreTime, [](Maps& maps, const ExploreQuery& query) {
     if (query.begins) maps.explorer.begin();
     nav::RouteGround ground(maps.planner, maps.platform, maps.areas, query.within);
     return maps.explorer.step(ground, query.place, seconds(query.made.time_since_epoch()), query.blocked);
   });
-  serve(services_.clear, "clear place", [](Maps& maps, const ClearPlaceQuery& query) {
+  serve(services_.clear, "clear place", kClearTime, [](Maps& maps, const ClearPlaceQuery& query) {
     set_team(maps.planner, query.team, maps.platform.width / 2);
     return nav::find_clear_place(maps.planner, query.query);
   });
-  serve(services_.find, "route query", [](Maps& maps, const RouteQuery& query) {
+  serve(services_.find, "route query", kQueryTime, [](Maps& maps, const RouteQuery& query) {
     nav::Route route = maps.planner.plan(query.from, query.to);
     route.goal = maps.goals.stand(maps.planner, query.to, query.from.z());
     return route;
@@ -113,9 +123,10 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
     taken_ = job->made;
     taken_at_ = job->place;
   }
+  const auto tiles = std::make_shared<int>(0);
   compute(
-      {.name = "route step", .modelled = kModelled, .lane = "maps"},
-      [job, takes, maps = maps_, watch = watch_.route]() -> nav::RouteStep {
+      {.name = "route step", .modelled = kStepTime.at(tiles_), .lane = "maps"},
+      [job, takes, tiles, maps = maps_, watch = watch_.route]() -> nav::RouteStep {
         maps->enter(*job);
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) {
@@ -125,13 +136,17 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
           maps->explorer.add_scan(scan->measured(), scan->located);
           if (watch) watch(*job, maps->planner);
         }
+        *tiles = maps->planner.map().used();
         set_team(maps->planner, job->team, maps->platform.width / 2);
         if (job->goal) return maps->step(*job, stamp);
         maps->route_follower.clear();
         maps->refused_since.reset();
         return {};
       },
-      reply);
+      [this, tiles, reply](Result<nav::RouteStep> answer) {
+        tiles_ = *tiles;
+        reply(std::move(answer));
+      });
 }
 
 Reason reason_of(nav::Standing standing) {

@@ -83,6 +83,8 @@ struct RouteServices {
   Service<ClearPlaceQuery, std::optional<Eigen::Vector3d>> clear{"clear place", 2};
 };
 
+struct JobTime;
+
 /// The component of the global planner, on a strand of its own: a graph of the observed free space, and the
 /// followed route. After a restart its map is empty; the next scans fill it.
 class Router : public Component {
@@ -95,12 +97,13 @@ class Router : public Component {
  private:
   struct Maps;
   void step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::RouteStep>& reply);
-  /// Answers the queries to a service by jobs: `work(maps, query)` returns the answer.
+  /// Answers the queries to a service by jobs: `work(maps, query)` returns the answer. `time`: outlives this.
   template <class Query, class Answer, class Work>
-  void serve(Service<Query, Answer>& service, const char* name, Work work);
+  void serve(Service<Query, Answer>& service, const char* name, const JobTime& time, Work work);
 
   RouteServices& services_;
   std::shared_ptr<Maps> maps_;
+  int tiles_{0};  ///< In use after the last step.
   MapWatch watch_;
   std::optional<Time> taken_{};  ///< Time when the last scan entered the map.
   Eigen::Vector3d taken_at_{0, 0, 0};
