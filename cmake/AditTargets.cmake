@@ -72,6 +72,16 @@ function(adit_library name)
   install(TARGETS adit_${name} EXPORT adit-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
+# For libraries whose loops run for each return of a scan or each cell of a map. None asks for errno or a trap; without
+# them GCC takes four numbers at once. -O3: 4 % less processor time of a rehearsal, the same digests; they take 0 to 13 %
+# longer to compile. Sanitizers have a level of their own.
+function(adit_numeric name)
+  target_compile_options(adit_${name} PRIVATE -fno-math-errno -fno-trapping-math)
+  if(NOT ADIT_SANITIZE)
+    target_compile_options(adit_${name} PRIVATE $<$<CONFIG:Release>:-O3>)
+  endif()
+endfunction()
+
 # adit_program(NAME SOURCES ... LINK dep ...): an executable that is installed under its name.
 function(adit_program name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
