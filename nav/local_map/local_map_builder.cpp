@@ -59,7 +59,7 @@ std::shared_ptr<LocalMap> LocalMapBuilder::begin(const LocalMapScan& scan) {
   } else {
     map->x0_ = map->y0_ = LocalMap::kNowhere;
   }
-  map->cells_.assign(std::size_t{LocalMap::kSide} * LocalMap::kSide, LocalCell{});
+  map->cells_.resize(std::size_t{LocalMap::kSide} * LocalMap::kSide);
   map->places_.clear();
   return map;
 }
@@ -68,8 +68,9 @@ std::shared_ptr<const LocalMap> LocalMapBuilder::make(const TerrainMap& terrain,
                                                       const LocalMapOthers& others) {
   auto map = begin(scan);
   write_places(terrain, map->places_);
+  if (!map->is_placed() || !terrain.ground().grown()) clear(*map);
   if (map->is_placed()) {
-    write_ground(terrain, *map);
+    if (terrain.ground().grown()) write_ground(terrain, *map);
     write_obstacles(terrain, *map);
     mark(others, *map);
   }
@@ -79,6 +80,7 @@ std::shared_ptr<const LocalMap> LocalMapBuilder::make(const TerrainMap& terrain,
 std::shared_ptr<const LocalMap> LocalMapBuilder::make(const AirMap& air, const LocalMapScan& scan,
                                                       const LocalMapOthers& others) {
   auto map = begin(scan);
+  clear(*map);
   map->places_.reserve(AirMap::kMax);
   for (const Eigen::Vector2f& place : air.cells()) {
     map->places_.push_back({.x = place.x(), .y = place.y(), .kind = CellClass::obstacle});
@@ -143,27 +145,51 @@ void LocalMapBuilder::write_places(const TerrainMap& terrain, std::vector<LocalP
   }
 }
 
-// A cell of the terrain's ground is as wide as two of the map.
+void LocalMapBuilder::clear(LocalMap& map) { std::ranges::fill(map.cells_, LocalCell{}); }
+
+// A cell of the terrain's ground is as wide as two of the map, whose rows lie along x and the ground's along
+// y. A few rows of the map at a time, so that those of both stay in the processor's cache.
 void LocalMapBuilder::write_ground(const TerrainMap& terrain, LocalMap& map) {
   static_assert(GroundGrid::kCell == 2 * LocalMap::kCell);
+  constexpr int kTogether = 4;
   const GroundGrid& ground = terrain.ground();
   const int side = ground.side();
-  if (!ground.grown()) return;
   const Datum datum(terrain, map.scan_.body);
   const Eigen::Vector2f first = ground.middle(0);
   const int ix0 = LocalMap::cell(first.x() - LocalMap::kCell / 2),
             iy0 = LocalMap::cell(first.y() - LocalMap::kCell / 2);
-  for (int k = 0; k < static_cast<int>(ground.cells()); ++k) {
-    LocalCell cell;
-    cell.low = ground.height(k) - datum.at(ground.middle(k));
-    cell.measured = ground.measured(k);
-    cell.fresh = ground.fresh(k);
-    cell.kind = kinds_[k];
-    cell.cost = costs_[k];
-    const int ix = ix0 + 2 * (k / side), iy = iy0 + 2 * (k % side);
-    for (const int dy : {0, 1})
-      for (const int dx : {0, 1})
-        if (map.inside(ix + dx, iy + dy)) map.cells_[LocalMap::index(ix + dx, iy + dy)] = cell;
+  const auto row_at = [&map](int iy) {
+    return map.inside(map.x0_, iy) ? &map.cells_[LocalMap::index(0, iy)] : nullptr;
+  };
+  const auto clear_row = [](LocalCell* row) { std::fill_n(row, LocalMap::kSide, LocalCell{}); };
+  for (int iy = map.y0_; iy < map.y0_ + LocalMap::kSide; ++iy)
+    if (iy < iy0 || iy >= iy0 + 2 * side) clear_row(row_at(iy));
+  for (int begin = 0; begin < side; begin += kTogether) {
+    const int count = std::min(kTogether, side - begin);
+    std::array<LocalCell*, kTogether> rows{}, copies{};
+    for (int n = 0; n < count; ++n) {
+      rows[n] = row_at(iy0 + 2 * (begin + n));
+      copies[n] = row_at(iy0 + 2 * (begin + n) + 1);
+      if (!rows[n]) std::swap(rows[n], copies[n]);
+      if (rows[n]) clear_row(rows[n]);
+    }
+    for (int i = 0; i < side; ++i) {
+      const int ix = ix0 + 2 * i;
+      for (int n = 0; n < count; ++n) {
+        if (!rows[n]) continue;
+        const int j = begin + n, k = i * side + j;
+        LocalCell cell;
+        cell.low = ground.height(k) - datum.at(ground.middle(i, j));
+        cell.measured = ground.measured(k);
+        cell.fresh = ground.fresh(k);
+        cell.kind = kinds_[k];
+        cell.cost = costs_[k];
+        for (const int dx : {0, 1})
+          if (map.inside(ix + dx, map.y0_)) rows[n][LocalMap::index(ix + dx, 0)] = cell;
+      }
+    }
+    for (int n = 0; n < count; ++n)
+      if (copies[n]) std::copy_n(rows[n], LocalMap::kSide, copies[n]);
   }
 }
 

@@ -34,6 +34,8 @@ class LocalMapBuilder {
  private:
   std::shared_ptr<LocalMap> begin(const LocalMapScan& scan);
   void write_places(const TerrainMap& terrain, std::vector<LocalPlace>& places);
+  static void clear(LocalMap& map);
+  /// Writes all cells: those without ground are as cleared.
   void write_ground(const TerrainMap& terrain, LocalMap& map);
   static void write_obstacles(const TerrainMap& terrain, LocalMap& map);
   static void mark(const LocalMapOthers& others, LocalMap& map);

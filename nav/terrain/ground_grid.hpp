@@ -116,9 +116,11 @@ class GroundGrid {
   bool inside(float x, float y) const {
     return std::abs(cell(x) - centre_x_) <= half_ && std::abs(cell(y) - centre_y_) <= half_;
   }
-  Eigen::Vector2f middle(int index) const {
-    return {(static_cast<float>(centre_x_ + index / side_ - half_) + 0.5f) * kCell,
-            (static_cast<float>(centre_y_ + index % side_ - half_) + 0.5f) * kCell};
+  Eigen::Vector2f middle(int index) const { return middle(index / side_, index % side_); }
+  /// The same by row along x and column along y.
+  Eigen::Vector2f middle(int i, int j) const {
+    return {(static_cast<float>(centre_x_ + i - half_) + 0.5f) * kCell,
+            (static_cast<float>(centre_y_ + j - half_) + 0.5f) * kCell};
   }
   /// Address of a window cell on the torus, below places(); constant while the cell is in the window.
   std::size_t place(int index) const {
