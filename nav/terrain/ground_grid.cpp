@@ -96,10 +96,9 @@ GroundGrid::GroundGrid(const GroundParams& params)
                         byte(dy - by)});
     }
   const auto ring = [](const Step& s) { return std::max(std::abs(s.dx), std::abs(s.dy)); };
-  const auto off_axis = [](const Step& s) { return std::min(std::abs(s.dx), std::abs(s.dy)); };
-  std::stable_sort(steps_.begin(), steps_.end(), [&](const Step& a, const Step& b) {
-    return ring(a) != ring(b) ? ring(a) < ring(b) : off_axis(a) < off_axis(b);
-  });
+  // A ring depends on the one inside of it alone: its cells are visited in the order of memory.
+  std::stable_sort(steps_.begin(), steps_.end(),
+                   [&](const Step& a, const Step& b) { return ring(a) < ring(b); });
   for (std::size_t gap = 0; gap < rise_.size(); ++gap) {
     const int cells_away = gap >= kNever ? 0 : static_cast<int>(gap);
     // Up to a few cells the ground may be as steep as the platform permits; beyond, it bends as it usually
