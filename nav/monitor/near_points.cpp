@@ -101,9 +101,41 @@ NearPoints::Tilt NearPoints::tilt_of(const Pose3& body) const {
   return tilt;
 }
 
-NearPoints::Fan NearPoints::sort_in(const ScanPoints& scan, const Tilt& tilt) {
+NearPoints::Fan NearPoints::fan_of(const ScanPoints& scan) const {
+  Fan fan{};
+  fan.lidar = scan.origin(platform_.lidar_origin());
+  const Eigen::Vector3f from = fan.lidar.cast<float>();
+  const auto points = scan.first();
+  // Four rays at a time. Comparisons that a value which is not a number makes false leave the limits alone.
+  using Lanes = float __attribute__((vector_size(16)));
+  constexpr std::size_t kLanes = 4;
+  Lanes lowest = Lanes{} + fan.lowest, highest = Lanes{} + fan.highest;
+  for (std::size_t n = 0; n < points.size(); n += kLanes) {
+    Lanes x, y, z;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      // The last ray fills up its group.
+      const Eigen::Vector3f& p = points[std::min(n + lane, points.size() - 1)];
+      x[lane] = p.x() - from.x();
+      y[lane] = p.y() - from.y();
+      z[lane] = p.z() - from.z();
+    }
+    // The rays belong to the lidar, which tilts with the body.
+    Lanes range = x * x + y * y;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) range[lane] = std::sqrt(range[lane]);
+    const Lanes rise = z / range;
+    const auto far = range > 0.1f;
+    lowest = far & (rise < lowest) ? rise : lowest;
+    highest = far & (rise > highest) ? rise : highest;
+  }
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    fan.lowest = std::min(fan.lowest, lowest[lane]);
+    fan.highest = std::max(fan.highest, highest[lane]);
+  }
+  return fan;
+}
+
+void NearPoints::sort_in(const ScanPoints& scan, const Tilt& tilt) {
   const auto top = static_cast<float>(limits_.headroom);
-  const auto points = scan.all();
   const Eigen::Matrix3f& R = tilt.R_level_base;
   // Of the lowest lidar, above base_link.
   float lidar = std::numeric_limits<float>::infinity();
@@ -126,38 +158,36 @@ NearPoints::Fan NearPoints::sort_in(const ScanPoints& scan, const Tilt& tilt) {
   std::fill(lowest_.begin(), lowest_.end(), kNotSeen);
   std::fill(upper_.begin(), upper_.end(), -kNotSeen);
   std::fill(highest_.begin(), highest_.end(), -1e9f);
-  Fan fan{};
-  fan.lidar = scan.origin(platform_.lidar_origin());
-  const Eigen::Vector3f from = fan.lidar.cast<float>();
-  for (const Eigen::Vector3f& raw : scan.first()) {
-    // The rays belong to the lidar, which tilts with the body.
-    const Eigen::Vector3f ray = raw - from;
-    const float range = std::sqrt(ray.x() * ray.x() + ray.y() * ray.y());
-    if (!(range > 0.1f)) continue;  // True when it is not a number.
-    fan.lowest = std::min(fan.lowest, ray.z() / range);
-    fan.highest = std::max(fan.highest, ray.z() / range);
-  }
-  for (const Eigen::Vector3f& raw : points) {
-    const Eigen::Vector3f p = R * raw;
+  if (raised_.size() < scan.all().size()) raised_.resize(scan.all().size());
+  std::size_t raised_count = 0;
+  for (const Eigen::Vector3f& raw : scan.all()) {
+    // R * raw, in the order of Eigen, which does not inline it here.
+    const auto level = [&](int row) {
+      return R(row, 0) * raw.x() + (R(row, 1) * raw.y() + R(row, 2) * raw.z());
+    };
+    const Eigen::Vector3f p(level(0), level(1), level(2));
     if (!inside(p)) continue;
     const std::size_t cell = coarse(p.x(), p.y());
     lowest_[cell] = std::min(lowest_[cell], p.z());
-    if (p.z() <= top) upper_[cell] = std::max(upper_[cell], p.z());
+    if (p.z() > top) continue;
+    upper_[cell] = std::max(upper_[cell], p.z());
+    const float below = std::min(0.0f, plane_height(p));
+    // Without a branch, which would be mispredicted often.
+    raised_[raised_count] = {p, raw.x(), raw.y(), below};
+    raised_count += p.z() - below <= step ? 0 : 1;
   }
   for (const std::uint32_t i : used_) cells_[i] = {};
   used_.clear();
   const auto body2 = static_cast<float>(std::pow(body_.radius() + kOutside, 2));
-  for (const Eigen::Vector3f& raw : points) {
-    const Eigen::Vector3f p = R * raw;
-    const float below = std::min(0.0f, plane_height(p));
-    if (!inside(p) || p.z() > top || p.z() - below <= step) continue;
+  for (const Raised& raised : std::span(raised_).first(raised_count)) {
+    const Eigen::Vector3f& p = raised.at;
     const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
     const bool led_to = platform_.stairs && tread_leads_to(p, range, step + stairs * range, step + within);
     // A wall as seen from below is a riser when the tread before it is visible.
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
-    if (!led_to) highest_[index] = std::max(highest_[index], p.z() - below);
-    const float from_body2 = raw.x() * raw.x() + raw.y() * raw.y();
-    if (from_body2 < body2 && body_.depth(raw.x(), raw.y()) > 0.0f) continue;
+    if (!led_to) highest_[index] = std::max(highest_[index], p.z() - raised.below);
+    const float from_body2 = raised.x * raised.x + raised.y * raised.y;
+    if (from_body2 < body2 && body_.depth(raised.x, raised.y) > 0.0f) continue;
     // Most returns of walls are far above the lowest one of their cell.
     if (p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) {
       const float depth = body_.depth(p.x(), p.y());
@@ -180,7 +210,6 @@ NearPoints::Fan NearPoints::sort_in(const ScanPoints& scan, const Tilt& tilt) {
     cell.z = std::max(cell.z, p.z());
     ++cell.count;
   }
-  return fan;
 }
 
 bool NearPoints::hidden(const Eigen::Vector3d& local, const Fan& fan) const {
@@ -218,7 +247,8 @@ void NearPoints::remember(const Pose3& body, const Tilt& tilt, const Fan& fan, d
 void NearPoints::take(const ScanPoints& scan, const Pose3& body, double stamp_s,
                       const UprightRangeImage& seen) {
   const Tilt tilt = tilt_of(body);
-  const Fan fan = sort_in(scan, tilt);
+  const Fan fan = fan_of(scan);
+  sort_in(scan, tilt);
   remember(body, tilt, fan, stamp_s, seen);
   std::swap(places_, remembered_);
   // Nearest first, in case there are more than the maximum.

@@ -16,8 +16,8 @@ namespace adit::nav {
 /// Obstacles near the robot by its newest scan alone, without a map or a ground model. A return is an
 /// obstacle when it is higher than the ground can be at its distance, much higher than the return directly
 /// below it, or at a place where an obstacle was seen before. Places that the newest scan cannot show, below
-/// its lowest ray or nearer than its minimum range, come from earlier scans. All sizes are fixed, and nothing
-/// is allocated after construction.
+/// its lowest ray or nearer than its minimum range, come from earlier scans. All sizes but that of a scan are
+/// fixed, and nothing is allocated after the first scan of its lidar's size.
 ///
 /// Heights are in gravity-aligned axes, so a body that tilts over a stone sees the same obstacles as a level
 /// one. The ground may be parallel to the body (on a ramp) or level (the body alone tilts): a return is an
@@ -52,6 +52,12 @@ class NearPoints {
     float x, y, z;
     std::uint16_t count;
   };
+  /// A return above the step.
+  struct Raised {
+    Eigen::Vector3f at;  ///< In level axes at base_link, m.
+    float x, y;          ///< base_link, m.
+    float below;         ///< Height of the lower one of the two planes of the ground, m.
+  };
   /// Elevation range of the rays of the newest scan's first lidar, rise per metre.
   struct Fan {
     Eigen::Vector3d lidar{0, 0, 0};  ///< base_link, m.
@@ -81,7 +87,8 @@ class NearPoints {
     float slope{};               ///< Maximum rise of the ground per metre outside of the footprint.
   };
   Tilt tilt_of(const Pose3& body) const;
-  Fan sort_in(const ScanPoints& scan, const Tilt& tilt);
+  Fan fan_of(const ScanPoints& scan) const;
+  void sort_in(const ScanPoints& scan, const Tilt& tilt);
   /// Whether the ground was seen one step before `p`: flat, at most `highest`, and at most `rise` lower.
   bool tread_leads_to(const Eigen::Vector3f& p, float range, float highest, float rise) const;
   bool seen_again(const Eigen::Vector2f& local) const;
@@ -99,6 +106,7 @@ class NearPoints {
   std::vector<float> upper_;    ///< Highest return in each 10 cm cell that the robot cannot pass under, m.
   std::vector<float> highest_;  ///< Highest return in each 5 cm cell that is too high to step on, m.
   std::vector<Cell> cells_;
+  std::vector<Raised> raised_{};  ///< Those of the newest scan are the first ones.
   std::vector<std::uint32_t> used_{};
   std::vector<Place> places_{}, remembered_{};
 };
