@@ -38,10 +38,11 @@ class RayBlock {
   void take(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& lidar,
             const Eigen::Matrix3f& turn) {
     count_ = points.size() < kSize ? points.size() : kSize;
+    const float x0 = lidar.x(), y0 = lidar.y(), z0 = lidar.z();
     for (std::size_t n = 0; n < count_; ++n) {
-      x_[n] = points[n].x() - lidar.x();
-      y_[n] = points[n].y() - lidar.y();
-      z_[n] = points[n].z() - lidar.z();
+      x_[n] = points[n].x() - x0;
+      y_[n] = points[n].y() - y0;
+      z_[n] = points[n].z() - z0;
     }
     const float a = turn(0, 0), b = turn(0, 1), c = turn(0, 2), d = turn(1, 0), e = turn(1, 1),
                 f = turn(1, 2), g = turn(2, 0), h = turn(2, 1), i = turn(2, 2);
@@ -56,7 +57,11 @@ class RayBlock {
     }
   }
   std::size_t count() const { return count_; }
+  /// Those from count() on, below kSize, have no meaning, and are there for loops that the compiler
+  /// vectorises.
   Ray operator[](std::size_t n) const { return {range_[n], tangent_[n], bearing_[n]}; }
+  /// Height of a point above the sensor, in the axes of the points, m.
+  float height(std::size_t n) const { return z_[n]; }
 
  private:
   std::size_t count_{0};

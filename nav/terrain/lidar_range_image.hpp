@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -18,16 +19,20 @@ class LidarRangeImage {
 
   void clear();
 
-  /// Adds a return, in the lidar's frame.
-  void add(const Ray& ray) {
-    if (ray.tangent < lowest_) lowest_ = ray.tangent;
+  /// Index of the bin of a direction in the lidar's frame; -1: outside of the image.
+  static int bin_of(const Ray& ray) {
     const int row = row_of(ray.tangent);
-    if (row < 0 || row >= kRows) return;
-    std::uint16_t& bin = bins_[row * kColumns + column_of(ray.bearing)];
+    return row < 0 || row >= kRows ? -1 : row * kColumns + column_of(ray.bearing);
+  }
+  /// Adds a return; `bin`: its bin_of().
+  void add(int bin, const Ray& ray) {
+    if (ray.tangent < lowest_) lowest_ = ray.tangent;
+    if (bin < 0) return;
     const float centimetres = ray.range * 100.0f;
     const auto value = centimetres < 65000.0f ? static_cast<std::uint16_t>(centimetres) : kFar;
-    if (value < bin) bin = value;
+    bins_[bin] = std::min(bins_[bin], value);  // A branch would be mispredicted often.
   }
+  void add(const Ray& ray) { add(bin_of(ray), ray); }
 
   /// Whether a ray passed the line from `low` to `high` (lidar's frame, about upright) and went at least
   /// `beyond` metres farther.

@@ -2,6 +2,7 @@
 #include "nav/terrain/terrain_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -184,23 +185,30 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const Eigen::V
   const Eigen::Matrix3f straight = Eigen::Matrix3f::Identity();
   for (std::size_t begin = 0; begin < points.size(); begin += block_.count()) {
     block_.take(points.subspan(begin), sensor, straight);
-    for (std::size_t n = 0; n < block_.count(); ++n) {
-      const Eigen::Vector3f& p = points[begin + n];
+    constexpr int kNoReturn = -2;
+    std::array<int, RayBlock::kSize> bins;
+    for (std::size_t n = 0; n < RayBlock::kSize; ++n) {
       const Ray ray = block_[n];
-      const float flat2 = ray.range * ray.range, dz = p.z() - sensor.z();
+      const float flat2 = ray.range * ray.range, dz = block_.height(n);
       const float full2 = flat2 + dz * dz;
       // Written so that a NaN fails. A vertical ray has no bearing.
-      if (!(full2 > min2 && flat2 > 1e-4f && full2 < 1e6f)) continue;
-      rays.add(ray);
+      const bool returned = (full2 > min2) & (flat2 > 1e-4f) & (full2 < 1e6f);
+      bins[n] = returned ? LidarRangeImage::bin_of(ray) : kNoReturn;
+    }
+    for (std::size_t n = 0; n < block_.count(); ++n) {
+      if (bins[n] == kNoReturn) continue;
+      const Eigen::Vector3f& p = points[begin + n];
+      const Ray ray = block_[n];
+      rays.add(bins[n], ray);
       const float out2 = p.x() * p.x() + p.y() * p.y();  // From base_link.
       if (out2 <= range2) {
         if (out2 < reach2 && body_.depth(p.x(), p.y()) > 0.0f) continue;
-        const Eigen::Vector3f world = view.base + view.turn * p;
+        const Eigen::Vector3f world = view.in_map(p);
         ground_.add(world.x(), world.y(), world.z());
         near_.push_back(world);
       } else if (const float end = up.dot(p);
                  deep && end < 0 && above * ray.range < range * (above - end) && deep_.size() < kMaxDeep) {
-        deep_.push_back(view.base + view.turn * p);
+        deep_.push_back(view.in_map(p));
       }
     }
   }

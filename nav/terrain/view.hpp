@@ -37,6 +37,14 @@ struct View {
   }
   /// The lidar from base_link, along the map's x and y, m.
   Eigen::Vector2f aside() const { return (turn * Eigen::Vector3f(lidar.x(), lidar.y(), 0)).head<2>(); }
+  /// Converts a point of base_link into the map. Eigen does not inline `base + turn * p`, which runs for
+  /// every return; this adds in the same order.
+  Eigen::Vector3f in_map(const Eigen::Vector3f& p) const {
+    const auto along = [&](int row) {
+      return base[row] + (turn(row, 0) * p.x() + (turn(row, 1) * p.y() + turn(row, 2) * p.z()));
+    };
+    return {along(0), along(1), along(2)};
+  }
   /// Converts a point of the map into the lidar's frame.
   Eigen::Vector3f seen(float x, float y, float z) const {
     return turn.transpose() * (Eigen::Vector3f(x, y, z) - sensor);

@@ -92,12 +92,21 @@ void Tracker::take_in(const ScanPoints& scan, const Pose3& body, Image& now) {
   now.seen.clear();
   for (std::size_t first = 0; first < points.size(); first += block_.count()) {
     block_.take(points.subspan(first), lidar, turn);
-    for (std::size_t n = 0; n < block_.count(); ++n) {
+    // Four rays at a time.
+    std::array<int, RayBlock::kSize> bins;
+    for (std::size_t n = 0; n < RayBlock::kSize; ++n) {
       const Ray ray = block_[n];
       // Written so that values that are not finite fail.
-      if (!(ray.range > kNearest && ray.range < kFarthest && std::fabs(ray.tangent) < kSteepest)) continue;
-      const int bin = now.seen.add(ray);
-      if (bin >= 0) nearest_[bin] = static_cast<std::uint32_t>(first + n);
+      const bool usable =
+          (ray.range > kNearest) & (ray.range < kFarthest) & (std::fabs(ray.tangent) < kSteepest);
+      bins[n] = usable ? UprightRangeImage::bin_of(ray) : -1;
+    }
+    for (std::size_t n = 0; n < block_.count(); ++n) {
+      if (bins[n] < 0) continue;
+      const int nearer = now.seen.add(bins[n], block_[n].range);
+      // The last element takes the others.
+      constexpr int kOther = UprightRangeImage::kBins;
+      nearest_[kOther - nearer * (kOther - bins[n])] = static_cast<std::uint32_t>(first + n);
     }
   }
 }

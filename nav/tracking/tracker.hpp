@@ -101,7 +101,8 @@ class Tracker {
   std::vector<Image> images_ = std::vector<Image>(kImages);
   std::size_t next_{0}, newest_{0};
   RayBlock block_{};
-  std::array<std::uint32_t, UprightRangeImage::kBins> nearest_{};  ///< Index of the nearest point by bin.
+  /// Index of the nearest point by bin; behind them one element without a meaning.
+  std::array<std::uint32_t, UprightRangeImage::kBins + 1> nearest_{};
   std::array<Column, UprightRangeImage::kColumns> columns_{};
   std::array<Observation, kTracks> observations_{};
   std::size_t observation_count_{0};
