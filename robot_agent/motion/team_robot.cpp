@@ -15,15 +15,16 @@ constexpr double kOutline = 0.1;     // m: cells of the map around a robot's out
 /// The outline of a robot, body frame of this one.
 struct Box {
   PlanarTransform T_box_body;
-  Eigen::Vector2d centre;    ///< In the body frame, m.
   double length{}, width{};  ///< Half of them, with the margin, m.
   double low{}, high{};      ///< Heights in odom, m.
+  float near_x{}, near_y{};  ///< Its centre in the body frame, m.
+  float near2{};             ///< Squared radius around it that the outline does not leave, m2.
 
-  /// Whether a place is near enough for contains(), which costs much more. Also true where a size is not a
+  /// Whether a point is near enough for contains(), which costs much more. Also true where something is not a
   /// number.
-  bool is_near(const Eigen::Vector2d& place) const {
-    constexpr double kRounding = 1e-6;  // m^2
-    return !((place - centre).squaredNorm() > length * length + width * width + kRounding);
+  bool is_near(const Eigen::Vector3f& point) const {
+    const float dx = point.x() - near_x, dy = point.y() - near_y;
+    return !(dx * dx + dy * dy > near2);
   }
   bool contains(const Eigen::Vector2d& place, double height) const {
     const Eigen::Vector2d in_box = T_box_body * place;
@@ -37,18 +38,21 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
                                          const std::vector<TeamRobot>& team) {
   const Pose2 body = scan->body.planar();
   std::vector<Box> boxes;
-  for (const TeamRobot& robot : team)
-    if ((robot.pose.position() - body.position()).norm() <= kReach)
-      boxes.push_back({PlanarTransform(robot.pose.inverse() * body), (body.inverse() * robot.pose).position(),
-                       robot.length / 2 + kPoseErrors, robot.width / 2 + kPoseErrors, robot.z - kPoseErrors,
-                       robot.z + kTallest});
+  for (const TeamRobot& robot : team) {
+    if (!((robot.pose.position() - body.position()).norm() <= kReach)) continue;
+    constexpr double kRounding = 1e-3;  // m2: of single precision, within kReach.
+    const Eigen::Vector2d centre = (body.inverse() * robot.pose).position();
+    const double length = robot.length / 2 + kPoseErrors, width = robot.width / 2 + kPoseErrors;
+    boxes.push_back({PlanarTransform(robot.pose.inverse() * body), length, width, robot.z - kPoseErrors,
+                     robot.z + kTallest, static_cast<float>(centre.x()), static_cast<float>(centre.y()),
+                     static_cast<float>((length * length + width * width) * (1 + kRounding) + kRounding)});
+  }
   if (boxes.empty()) return scan;
   const auto on_robot = [&](const Eigen::Vector3f& point) {
-    const Eigen::Vector2d place = point.head<2>().cast<double>();
     return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
-      if (!box.is_near(place)) return false;
+      if (!box.is_near(point)) return false;
       const Eigen::Vector3d turned = scan->body.orientation * point.cast<double>();
-      return box.contains(place, scan->body.position.z() + turned.z());
+      return box.contains(point.head<2>().cast<double>(), scan->body.position.z() + turned.z());
     });
   };
   const auto first = std::find_if(scan->points.begin(), scan->points.end(), on_robot);
