@@ -2,7 +2,10 @@
 #include "perception/input/scan_input.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <span>
 #include <utility>
 
 namespace adit::perception {
@@ -20,6 +23,24 @@ constexpr double kFewBelow = 0.01;        ///< Of all returns: fewer below the l
 constexpr int kOvertaken = 10;            ///< More than one sweep in so many that is late is no accident.
 constexpr int kMostOvertaken = 40, kTooOften = 30;
 constexpr int kPatience = 10;  ///< Scans in a row without another sensor, before that is a warning.
+
+/// The best time of points, of which there is at least one, s. Four candidates, as each comparison waits for
+/// the one before it.
+template <class Better>
+float best_time(std::span<const TimedPoint> points, Better better) {
+  constexpr std::size_t kChains = 4;
+  std::array<float, kChains> best{};
+  best.fill(points.front().time);
+  const auto take = [&better](float& best_yet, float time) {
+    best_yet = better(time, best_yet) ? time : best_yet;
+  };
+  std::size_t n = 0;
+  for (; n + kChains <= points.size(); n += kChains)
+    for (std::size_t chain = 0; chain < kChains; ++chain) take(best[chain], points[n + chain].time);
+  for (; n < points.size(); ++n) take(best[0], points[n].time);
+  for (const float time : best) take(best[0], time);
+  return best[0];
+}
 
 double after(std::uint64_t stamp, std::uint64_t than) {
   return static_cast<double>(static_cast<std::int64_t>(stamp - than)) * 1e-9;
@@ -88,8 +109,7 @@ void ScanInput::add_odometry(std::uint64_t stamp, const Eigen::Vector3d& velocit
 
 std::uint64_t ScanInput::end_of(const Sweep& sweep) {
   if (!sweep.timed || sweep.stamp == 0) return sweep.stamp;
-  float last = sweep.points.front().time;
-  for (const TimedPoint& point : sweep.points) last = std::max(last, point.time);
+  const float last = best_time(sweep.points, std::greater<>());
   return sweep.stamp +
          static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(double{last} * 1e9)));
 }
@@ -159,8 +179,7 @@ ScanInput::SweepMotion ScanInput::motion_of(const Sweep& sweep, const PoseFuncti
                                             const Pose3& T_base_sensor, Scan& scan) const {
   SweepMotion motion{Deskew::none(T_base_sensor)};
   if (!sweep.timed || sweep.stamp == 0) return motion;
-  motion.first = sweep.points.front().time;
-  for (const TimedPoint& point : sweep.points) motion.first = std::min(motion.first, point.time);
+  motion.first = best_time(sweep.points, std::less<>());
   const std::uint64_t from =
       sweep.stamp +
       static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(double{motion.first} * 1e9)));
