@@ -48,34 +48,44 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
                      static_cast<float>((length * length + width * width) * (1 + kRounding) + kRounding)});
   }
   if (boxes.empty()) return scan;
-  const auto on_robot = [&](const Eigen::Vector3f& point) {
-    return std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
-      if (!box.is_near(point)) return false;
+  // Returns on a robot, in their order.
+  std::vector<std::size_t> on_robot;
+  for (const Box& box : boxes)
+    for (std::size_t n = 0; n < scan->points.size(); ++n) {
+      const Eigen::Vector3f& point = scan->points[n];
+      if (!box.is_near(point)) continue;
       const Eigen::Vector3d turned = scan->body.orientation * point.cast<double>();
-      return box.contains(point.head<2>().cast<double>(), scan->body.position.z() + turned.z());
-    });
-  };
-  const auto first = std::find_if(scan->points.begin(), scan->points.end(), on_robot);
-  if (first == scan->points.end()) return scan;
-  const auto clean = static_cast<std::size_t>(first - scan->points.begin());
+      if (box.contains(point.head<2>().cast<double>(), scan->body.position.z() + turned.z()))
+        on_robot.push_back(n);
+    }
+  if (on_robot.empty()) return scan;
+  std::ranges::sort(on_robot);
+  on_robot.erase(std::ranges::unique(on_robot).begin(), on_robot.end());
   auto rest = std::make_shared<Scan>();
   rest->body = scan->body;
   rest->located = scan->located;
   rest->jumps = scan->jumps;
   rest->planar = scan->planar;
   rest->movers = scan->movers;
-  rest->points.reserve(scan->points.size());
   rest->parts = scan->parts;
-  for (ScanPart& part : rest->parts) part.count = 0;
   std::size_t part = 0, end = scan->parts.empty() ? scan->points.size() : scan->parts[0].count;
-  for (std::size_t n = 0; n < scan->points.size(); ++n) {
+  for (const std::size_t n : on_robot) {
     while (n >= end && part + 1 < scan->parts.size()) end += scan->parts[++part].count;
-    const Eigen::Vector3f& point = scan->points[n];
-    if (n >= clean && on_robot(point)) continue;
-    rest->points.push_back(point);
-    if (!rest->parts.empty()) ++rest->parts[part].count;
-    if (!scan->isolated.empty()) rest->isolated.push_back(scan->isolated[n]);
+    if (!rest->parts.empty()) --rest->parts[part].count;
   }
+  const auto copy_others = [&on_robot](const auto& from, auto& to) {
+    to.reserve(from.size());
+    std::size_t begin = 0;
+    const auto copy_until = [&](std::size_t n) {
+      to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin),
+                from.begin() + static_cast<std::ptrdiff_t>(n));
+      begin = n + 1;
+    };
+    for (const std::size_t n : on_robot) copy_until(n);
+    copy_until(from.size());
+  };
+  copy_others(scan->points, rest->points);
+  if (!scan->isolated.empty()) copy_others(scan->isolated, rest->isolated);
   return rest;
 }
 
