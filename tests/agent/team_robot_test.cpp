@@ -50,6 +50,18 @@ TEST(TeamRobots, ReturnsAtTheCornersOfATurnedBodyAreTakenOut) {
   EXPECT_EQ(scan->points.size() - without_team(scan, {robot})->points.size(), inside);
 }
 
+TEST(TeamRobots, AReturnOnTwoOfThemIsTakenOutOnce) {
+  auto scan = std::make_shared<Scan>();
+  scan->points = {{3, 0, 0.5f}, {1, 0, 0.5f}, {1, 1, 0.5f}};
+  scan->isolated = {0, 1, 2};
+  scan->parts = {{{0, 0, 0.5}, 3}};
+  const TeamRobot r2{"r2", Pose2{3, 0, 0}, 0.0, 1.0, 0.6, 0.0},
+      r3{"r3", Pose2{3.1, 0, 0}, 0.0, 1.0, 0.6, 0.0};
+  const auto rest = without_team(scan, {r2, r3});
+  EXPECT_THAT(rest->isolated, testing::ElementsAre(1, 2));
+  EXPECT_EQ(rest->parts[0].count, 2U);
+}
+
 TEST(TeamRobots, AScanWithoutTheirReturnsIsNotCopied) {
   auto scan = std::make_shared<Scan>();
   scan->points = {{1, 0, 0.5f}, {5, 0, 0.5f}};
