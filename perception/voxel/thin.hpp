@@ -39,7 +39,15 @@ class Thinner {
     std::uint64_t key{};
     std::uint32_t points{};  ///< So far.
   };
+  /// A point and its voxel.
+  struct Place {
+    const Eigen::Vector3f* point{};
+    std::uint64_t key{}, hash{};
+  };
   static constexpr std::uint32_t kFree = ~std::uint32_t{0};
+  void take(const Place& place);
+  /// Index of the first slot in which a voxel is searched.
+  std::size_t first_slot(std::uint64_t hash) const { return (hash ^ hash >> 29) & (slots_.size() - 1); }
   /// The slot of a voxel; kFree in it: the voxel is new.
   std::uint32_t& slot(std::uint64_t key, std::uint64_t hash);
   /// Makes an index with `count` slots, a power of two, for the voxels so far.
