@@ -109,6 +109,45 @@ void CoverageMap::add_scan(std::span<const Eigen::Vector3f> points, const Eigen:
   window_.begin(voxel_at(from));
   for (const Eigen::Vector3f& p : points)
     if (p.allFinite()) add_ray(from, body.position + turn * p.cast<double>());
+  forget_what_left();
+}
+
+void CoverageMap::forget_what_left() {
+  window_.visit_passed([this](int x, int y, int z, std::uint64_t passed, std::uint64_t hits) {
+    for (int band = band_of(z); band <= band_of(z + 63); ++band) {
+      const int from = band * kSlices - z;
+      const auto slice = [from](std::uint64_t bits) {
+        return static_cast<std::uint16_t>(from < 0 ? bits << -from : bits >> from);
+      };
+      if (slice(passed) != 0) count(x, y, band, slice(passed), slice(hits));
+    }
+  });
+}
+
+// Rays also pass the free part of a voxel that holds the surface of something solid. Behind that surface
+// nothing is seen, and the voxel stays as it is.
+void CoverageMap::count(int x, int y, int band, std::uint16_t passed, std::uint16_t hits) {
+  const int index = find(x >> kTileShift, y >> kTileShift, band);
+  if (index < 0) return;
+  Column& column = tiles_[index].columns[column_index(x, y)];
+  const auto gone = static_cast<std::uint16_t>(passed & column.hit & ~hits);
+  const auto most = [&column] { return column.passed[0] & column.passed[1] & column.passed[2]; };
+  auto carry = static_cast<std::uint16_t>(gone & ~most());
+  for (std::uint16_t& digit : column.passed) {
+    digit = static_cast<std::uint16_t>(digit & ~hits);
+    const auto both = static_cast<std::uint16_t>(digit & carry);
+    digit = static_cast<std::uint16_t>(digit ^ carry);
+    carry = both;
+  }
+  for (unsigned left = gone & most(); left != 0; left &= left - 1) {
+    const int k = std::countr_zero(left), z = band * kSlices + k;
+    const bool surrounded = seen({x - 1, y, z}) && seen({x + 1, y, z}) && seen({x, y - 1, z}) &&
+                            seen({x, y + 1, z}) && seen({x, y, z - 1}) && seen({x, y, z + 1});
+    if (!surrounded) continue;
+    const auto others = static_cast<std::uint16_t>(~(1u << k));
+    column.hit = static_cast<std::uint16_t>(column.hit & others);
+    for (std::uint16_t& digit : column.passed) digit = static_cast<std::uint16_t>(digit & others);
+  }
 }
 
 void CoverageMap::set_tried(const CoverageVoxel& voxel) {

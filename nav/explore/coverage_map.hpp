@@ -27,14 +27,17 @@ class CoverageMap {
   static constexpr int kSide = 4;         ///< Columns along the side of a tile.
   static constexpr int kSlices = 16;      ///< Voxels above one another in a tile.
   static constexpr double kRange = 12.0;  ///< What lies farther from the sensor does not count as seen, m.
-  /// Most tiles of 2 x 2 x 8 m (128 bytes each); a ray that would need more of them ends.
+  /// Most tiles of 2 x 2 x 8 m (208 bytes each); a ray that would need more of them ends.
   static constexpr std::size_t kMaxTiles = 65'536;
 
   /// A column of a tile; bit k: its k-th voxel from below.
   struct Column {
     std::uint16_t free{0};   ///< A ray passed.
-    std::uint16_t hit{0};    ///< A ray ended here.
+    std::uint16_t hit{0};    ///< A ray ended here, and what it met did not leave.
     std::uint16_t tried{0};  ///< The robot looked from a place that should show it, and saw nothing.
+    /// Scans in a row, up to 7, of which rays passed a voxel that was hit and none ended in it: one bit of
+    /// the number each.
+    std::array<std::uint16_t, 3> passed{};
     std::uint16_t seen() const { return free | hit; }
   };
   /// A square of columns over one band of heights.
@@ -43,8 +46,9 @@ class CoverageMap {
     std::array<Column, kSide * kSide> columns{};
   };
 
-  /// Takes a scan. `points`: base_link, m, not finite where nothing was hit; `sensor`: the lidar in
-  /// base_link, m; `body`: base_link in the map's frame.
+  /// Takes a scan. What was hit stays hit until 7 scans in a row show something behind it and nothing in it:
+  /// people, robots and doors leave. `points`: base_link, m, not finite where nothing was hit; `sensor`: the
+  /// lidar in base_link, m; `body`: base_link in the map's frame.
   void add_scan(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& sensor, const Pose3& body);
   /// Notes that a voxel cannot be seen from where it should be visible.
   void set_tried(const CoverageVoxel& voxel);
@@ -90,6 +94,13 @@ class CoverageMap {
       return &noted_[2 * (y * kEdge + x) + hits];
     }
     std::uint64_t bit(const CoverageVoxel& v) const { return std::uint64_t{1} << (v.z - corner_.z); }
+    /// Calls `visit(x, y, z, passed, hits)` for each column that a ray passed: bit k is the voxel at z + k.
+    template <class Visit>
+    void visit_passed(Visit&& visit) const {
+      for (int i = 0; i < kEdge * kEdge; ++i)
+        if (noted_[2 * i] != 0)
+          visit(corner_.x + i % kEdge, corner_.y + i / kEdge, corner_.z, noted_[2 * i], noted_[2 * i + 1]);
+    }
 
    private:
     static constexpr int kEdge = 64;  ///< Voxels.
@@ -101,6 +112,10 @@ class CoverageMap {
   int find(int tx, int ty, int band) const;
   Column* column_to_write(const CoverageVoxel& v);
   void add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  /// Forgets the hits of what left, after the rays of a scan.
+  void forget_what_left();
+  /// Counts a scan for the voxels of a column that it passed, and against those that it hit.
+  void count(int x, int y, int band, std::uint16_t passed, std::uint16_t hits);
 
   std::vector<Tile> tiles_{};
   std::unordered_map<std::uint64_t, int> index_{};  ///< Looked up only.

@@ -2,6 +2,9 @@
 // What a robot has seen of the space around it.
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cmath>
+
 #include "nav/explore/explorer.hpp"
 #include "tests/nav/box_world.hpp"
 
@@ -17,6 +20,11 @@ struct Watcher {
   double noise{0.02};
   CoverageMap map{};
   std::mt19937 random{1};
+
+  void look(int scans) {
+    for (int n = 0; n < scans; ++n)
+      map.add_scan(world.scan(pose, kEye, 16, 900, noise, random), {0, 0, kEye}, Pose3::level(pose, 0));
+  }
 };
 
 /// A closed room of 6 x 6 m; in its wall at x = 6 is a door of 1.2 m to a hall. The door is the last box.
@@ -56,6 +64,54 @@ TEST(CoverageMap, AnExplorationKnowsWhatTheDriveBeforeItHasShown) {
   const ExploreStep step = explorer.step(ground, {robot.pose.x, robot.pose.y, 0}, stamp, false);
   ASSERT_TRUE(step.goal);
   EXPECT_LT(step.goal->y(), 0) << "the other end of the hall, not what the drive has shown";
+}
+
+TEST(CoverageMap, ADoorThatOpensIsNoHitAnyMore) {
+  Watcher robot{room_with_a_door(), {3.0, 3.1, 0}};
+  const Eigen::Vector3d eye(3.0, 3.1, 1.25), behind(9.0, 3.1, 1.25);
+  robot.look(50);
+  EXPECT_FALSE(robot.map.visible(eye, behind));
+  robot.world.boxes.pop_back();
+  robot.look(6);
+  EXPECT_FALSE(robot.map.visible(eye, behind)) << "what was hit stays for some scans";
+  robot.look(4);
+  EXPECT_TRUE(robot.map.visible(eye, behind));
+}
+
+TEST(CoverageMap, APersonInADoorwayIsForgotten) {
+  Watcher robot{room_with_a_door(), {3.0, 3.1, 0}};
+  robot.world.boxes.back() = {5.9, 6.3, 2.8, 3.3, 0, 1.8};
+  const Eigen::Vector3d eye(3.0, 3.1, 0.75), behind(9.0, 3.1, 0.75);
+  robot.look(50);
+  EXPECT_FALSE(robot.map.visible(eye, behind));
+  robot.world.boxes.pop_back();
+  robot.look(20);
+  EXPECT_TRUE(robot.map.visible(eye, behind));
+}
+
+// Of the bars of a grating each scan meets other ones. Floor and ceiling lie on the border of two voxels, of
+// which one is enough.
+TEST(CoverageMap, WallsAndAGratingStayHit) {
+  Watcher robot{room_with_a_door(), {3.0, 3.1, 0}};
+  robot.world.boxes.pop_back();
+  for (double y = 2.4; y < 3.6; y += 0.15) robot.world.boxes.push_back({6.1, 6.12, y, y + 0.02, 0, 3});
+  robot.look(20);
+  const CoverageMap before = robot.map;
+  for (int n = 0; n < 100; ++n) {
+    robot.pose = {3.0 + 1.5 * std::sin(0.1 * n), 3.1 + 2.0 * std::cos(0.07 * n), 0.05 * n};
+    robot.look(1);
+  }
+  constexpr unsigned kBetween = 0b11110;  // Voxels from 0.5 to 2.5 m.
+  int lost = 0;
+  for (const CoverageMap::Tile& tile : before.tiles())
+    for (int c = 0; c < CoverageMap::kSide * CoverageMap::kSide; ++c) {
+      const int x = tile.tx * CoverageMap::kSide + c % CoverageMap::kSide,
+                y = tile.ty * CoverageMap::kSide + c / CoverageMap::kSide;
+      if (tile.band != 0) continue;
+      const CoverageMap::Column after = robot.map.column(x, y, 0);
+      lost += std::popcount(kBetween & tile.columns[c].hit & ~static_cast<unsigned>(after.hit));
+    }
+  EXPECT_EQ(lost, 0);
 }
 
 }  // namespace
